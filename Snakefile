@@ -1,0 +1,25 @@
+"""keyface: from a filmed performance to animated characters. See README.md."""
+
+from snakemake.utils import min_version
+
+min_version("9.27")
+
+
+configfile: "config/config.yaml"
+
+
+include: "workflow/rules/common.smk"
+include: "workflow/rules/capture.smk"
+include: "workflow/rules/align.smk"
+include: "workflow/rules/shapes.smk"
+include: "workflow/rules/weights.smk"
+include: "workflow/rules/bake.smk"
+include: "workflow/rules/review.smk"
+
+
+rule all:
+    default_target: True
+    input:
+        label_proposals(),
+        briefs(),
+        takes(),

@@ -1,0 +1,142 @@
+"""Tables, their validation, wildcards and input functions; no rules."""
+
+import os
+import sys
+from pathlib import Path
+
+import jsonschema
+import yaml
+
+from stages.files import errors, regions, show, source_code
+
+# the stages run with the Python that runs Snakemake, wherever that was started
+os.environ["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+
+SCHEMAS = Path(workflow.basedir) / "workflow" / "schemas"
+NAME = "[A-Za-z0-9][A-Za-z0-9_-]*"
+
+
+wildcard_constraints:
+    session=NAME,
+    shot=NAME,
+    actor=NAME,
+    character=NAME,
+
+
+def code_of(stage):
+    """Return the fingerprint of a stage's code: a job runs again when it changes."""
+    return source_code.digest(f"stages.{stage}")[:16]
+
+
+def present(paths):
+    """Return the sources that exist: a missing one fails its own job, not the whole run."""
+    return [path for path in paths if Path(path).exists()]
+
+
+def table(name):
+    """Read and validate one table of the show."""
+    return show.read(f"config/{name}.tsv", SCHEMAS / f"{name}.yaml")
+
+
+def cells(rows, column):
+    """Return a column of some rows."""
+    return [row.cells[column] for row in rows]
+
+
+def row_of(rows, column, value):
+    """Return the cells of the one row whose column holds a value."""
+    return next(row.cells for row in rows if row.cells[column] == value)
+
+
+def rows_of(rows, column, value):
+    """Return the cells of all rows whose column holds a value."""
+    return [row.cells for row in rows if row.cells[column] == value]
+
+
+def validated_show():
+    """Read every table of the show; stop with one line at the first fault."""
+    try:
+        settings = yaml.safe_load((SCHEMAS / "config.yaml").read_text(encoding="utf-8"))
+        for fault in jsonschema.Draft202012Validator(settings).iter_errors(config):
+            place = ".".join(map(str, fault.path)) or "top level"
+            raise errors.InputError("config/config.yaml", f"{place}: {fault.message}")
+        tables = {name: table(name) for name in TABLES}
+        face_regions = regions.read("config/regions.tsv")
+        check_references(tables, face_regions)
+        return tables, face_regions
+    except errors.InputError as error:
+        sys.exit(f"error: {error}")
+
+
+def check_references(tables, face_regions):
+    """Refuse references to nothing, with table, row and column."""
+    shots = cells(tables["shots"], "shot")
+    basis = [row["shot"] for row in rows_of(tables["shots"], "basis", "yes")]
+    known = {
+        "session": (cells(tables["sessions"], "session"), "sessions.tsv"),
+        "actor": (cells(tables["sessions"], "actor"), "sessions.tsv"),
+        "shots": (shots, "shots.tsv"),
+        "neutral_shot": (basis, "shots.tsv with basis yes"),
+        "shot": (basis, "shots.tsv with basis yes"),
+        "region": (list(face_regions), "regions.tsv"),
+        "character": (cells(tables["characters"], "character"), "characters.tsv"),
+    }
+    for name, columns in TABLES.items():
+        for column in columns:
+            names, where = known[column]
+            show.check_references(f"config/{name}.tsv", tables[name], column, names, where)
+
+
+# every table, and its columns that refer to another one
+TABLES = {
+    "sessions": ["neutral_shot"],
+    "shots": ["session"],
+    "region_settings": ["region"],
+    "key_shapes": ["actor", "region", "shot"],
+    "characters": [],
+    "cast": ["actor", "character", "shots"],
+}
+SHOW, REGIONS = validated_show()
+
+
+def sessions_of(actor):
+    """Return the names of an actor's sessions."""
+    return [row["session"] for row in rows_of(SHOW["sessions"], "actor", actor)]
+
+
+def shots_of(actor, basis=("yes", "no")):
+    """Return the rows of an actor's shots, in the table's order."""
+    wanted = sessions_of(actor)
+    shots = [row.cells for row in SHOW["shots"]]
+    return [shot for shot in shots if shot["session"] in wanted and shot["basis"] in basis]
+
+
+def session_of(shot):
+    """Return the row of a shot's session."""
+    name = row_of(SHOW["shots"], "shot", shot)["session"]
+    return row_of(SHOW["sessions"], "session", name)
+
+
+def cast_takes():
+    """Return (shot, character) of every take that the cast asks for."""
+    takes = []
+    for row in SHOW["cast"]:
+        wanted = show.listed(row.cells["shots"])
+        for shot in shots_of(row.cells["actor"]):
+            if not wanted or shot["shot"] in wanted:
+                takes.append((shot["shot"], row.cells["character"]))
+    return takes
+
+
+def characters_of(actor):
+    """Return the rows of the characters that an actor plays."""
+    names = [row["character"] for row in rows_of(SHOW["cast"], "actor", actor)]
+    return [row_of(SHOW["characters"], "character", name) for name in names]
+
+
+def sculpts_of(character):
+    """Return the sculpts that lie in a character's folder, sorted."""
+    row = row_of(SHOW["characters"], "character", character)
+    suffix = Path(row["neutral"]).suffix
+    found = Path(row["folder"], "sculpts").glob(f"*/*{suffix}")
+    return sorted(map(str, found))
