@@ -1,0 +1,114 @@
+"""Tell the motion of the head from the motion of the face, against the session's neutral.
+
+Points become face units: the distance of the two unit points on the neutral is 1, the origin is
+midway between them, y points up. The head motion is fitted as an affine map of the plane and
+delivered as translation, rotation and scale (CB02 section 5); the points with the affine map
+undone are the expression.
+"""
+
+import argparse
+from collections.abc import Sequence
+
+import numpy as np
+
+from stages import cli
+from stages.core import planar_motion
+from stages.files import errors, point_set, series
+
+SHEAR_DEVIATION = 0.1  # a head turned by 25 degrees is foreshortened by a tenth
+
+
+def build_parser() -> argparse.ArgumentParser:
+    """Return the parser of the stage's command line."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--performance", required=True, help="points of the shot [px], .parquet")
+    parser.add_argument("--neutral", required=True, help="points of the neutral's shot, .parquet")
+    parser.add_argument("--neutral-frame", required=True, type=int, help="frame of the neutral")
+    parser.add_argument(
+        "--unit-points",
+        required=True,
+        help="two points or contours with a comma between them; their distance is the face unit",
+    )
+    parser.add_argument(
+        "--head", required=True, choices=["remove", "none"], help="see sessions.tsv"
+    )
+    parser.add_argument("--head-motion", required=True, help="motion of each frame, .parquet")
+    parser.add_argument("--expression", required=True, help="points without it, .parquet")
+    return parser
+
+
+def main(argv: Sequence[str]) -> None:
+    """Read the points, fit the motion, write motion and expression."""
+    arguments = build_parser().parse_args(argv)
+    performance = series.read(arguments.performance, "performance")
+    names = series.point_names(performance)
+    neutral_px, ends = _neutral(arguments, names)
+    points_px = series.stack(performance, arguments.performance, names)
+    points, neutral = (_face_units(pixels, ends) for pixels in (points_px, neutral_px))
+    if arguments.head == "remove":
+        deviation = planar_motion.clip_deviation(points, neutral, SHEAR_DEVIATION)
+        linear, translation = planar_motion.fit(points, neutral, deviation, SHEAR_DEVIATION)
+    else:
+        linear = np.tile(np.eye(2), (len(points), 1, 1))
+        translation = np.zeros((len(points), 2))
+    confidence = {
+        name: values
+        for name, values in performance.columns.items()
+        if name.split(".")[-1] == "confidence"
+    }
+    meta = {"units": "face units", "points": names, "neutral": neutral.tolist()}
+    sources = [arguments.performance, arguments.neutral]
+    expression = planar_motion.remove(points, linear, translation)
+    for path, kind, columns in (
+        (
+            arguments.head_motion,
+            "head_motion",
+            _motion_columns(linear, translation) | {"confidence": confidence["confidence"]},
+        ),
+        (arguments.expression, "expression", series.unstack(expression, names) | confidence),
+    ):
+        frame, time_s, rate = performance.frame, performance.time_s, performance.rate
+        series.write(path, kind, frame, time_s, columns, rate, meta, sources)
+
+
+def _neutral(arguments: argparse.Namespace, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the neutral's points (P, 2) and its two unit points (2, 2) [px]."""
+    source = series.read(arguments.neutral, "performance")
+    if arguments.neutral_frame >= len(source.frame):
+        message = f"the neutral frame {arguments.neutral_frame} is beyond the last frame"
+        raise errors.InputError(arguments.neutral, f"{message} {len(source.frame) - 1}")
+    neutral = series.stack(source, arguments.neutral, names)[arguments.neutral_frame]
+    if not np.isfinite(neutral).all():
+        message = f"the face was not tracked on the neutral frame {arguments.neutral_frame}"
+        raise errors.InputError(arguments.neutral, message + ": label it or choose another")
+    contours = np.array([point_set.contour_of(name) for name in names])
+    ends = []
+    for unit_point in (text.strip() for text in arguments.unit_points.split(",")):
+        chosen = (np.array(names) == unit_point) | (contours == unit_point)
+        if not chosen.any():
+            message = f"unit point {unit_point} is no point or contour; see sessions.tsv"
+            raise errors.InputError(arguments.neutral, message)
+        ends.append(neutral[chosen].mean(axis=0))
+    return neutral, np.array(ends)
+
+
+def _face_units(pixels: np.ndarray, ends: np.ndarray) -> np.ndarray:
+    """Return points [px, y down] in face units, y up."""
+    unit = np.linalg.norm(ends[1] - ends[0])
+    return (pixels - ends.mean(axis=0)) / unit * [1, -1]
+
+
+def _motion_columns(linear: np.ndarray, translation: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the columns of a motion in the plane as one in space."""
+    angle, scale = planar_motion.decompose(linear)
+    zero = np.where(np.isfinite(angle), 0.0, np.nan)
+    quaternion = (zero, zero, np.sin(angle / 2), np.cos(angle / 2))
+    columns = {f"rotation.{axis}": part for axis, part in zip("xyzw", quaternion, strict=True)} | {
+        "translation.x": translation[:, 0],
+        "translation.y": translation[:, 1],
+    }
+    return columns | {"translation.z": zero, "scale": scale}
+
+
+if __name__ == "__main__":
+    cli.run_stage(main)
