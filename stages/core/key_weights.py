@@ -1,0 +1,122 @@
+"""Weights of key shapes for every frame, by named solves (CB02 section 4.1)."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from stages.core import box_least_squares, simplex_least_squares
+
+
+class Solution(NamedTuple):
+    """Hold the weights of every frame and how far to trust them.
+
+    Attributes
+    ----------
+    weights : (T, K) float array
+    residual : (T,) float array [feature unit]
+        Distance of the frame from ``neutral + sum_i w_i (shape_i - neutral)``, the point
+        that the contract of the bake gives these weights.
+    kkt_residual : (T,) float array
+        Largest change that one weight still wants to make on its own; 0 at the exact answer.
+    """
+
+    weights: np.ndarray
+    residual: np.ndarray
+    kkt_residual: np.ndarray
+
+
+def nonnegative_absolute(frames, shapes, neutral, sigma, bound):
+    """Minimise ``|x - sum_i w_i s_i|^2`` over ``w >= 0``, shapes as they are (CB02 eq. 4)."""
+    del neutral, sigma
+    return _boxed(frames, shapes, np.zeros(len(shapes)), 0.0, bound)
+
+
+def nonnegative_offset(frames, shapes, neutral, sigma, bound):
+    """Minimise ``|x - n - sum_i w_i d_i|^2`` over ``w >= 0``, with ``d_i = s_i - n``."""
+    del sigma
+    return _boxed(frames - neutral, shapes - neutral, np.zeros(len(shapes)), 0.0, bound)
+
+
+def least_squares(frames, shapes, neutral, sigma, bound):
+    """Minimise ``|x - n - sum_i w_i d_i|^2``, with ``d_i = s_i - n``."""
+    del sigma
+    return _boxed(frames - neutral, shapes - neutral, np.zeros(len(shapes)), -np.inf, bound)
+
+
+def tolerant(frames, shapes, neutral, sigma, bound):
+    """Minimise ``|x - n - sum_i w_i d_i|^2 + sigma^2 sum_i w_i^2 |d_i|^2``.
+
+    This is the error expected in the target when every sculpt is off by `sigma` times its own
+    distance from the neutral, independently of the others.
+    """
+    offsets = shapes - neutral
+    return _boxed(
+        frames - neutral, offsets, sigma * np.linalg.norm(offsets, axis=1), -np.inf, bound
+    )
+
+
+def simplex(frames, shapes, neutral, sigma, bound):
+    """Minimise ``|x - w_0 n - sum_i w_i s_i|^2`` over ``w >= 0`` with ``w_0 + sum_i w_i = 1``."""
+    del sigma, bound
+    corners = np.vstack([neutral, shapes])
+    weights, kkt_residual = simplex_least_squares.solve(corners, frames)
+    return weights[:, 1:], kkt_residual
+
+
+SOLVES = {
+    "nonnegative_absolute": nonnegative_absolute,
+    "nonnegative_offset": nonnegative_offset,
+    "simplex": simplex,
+    "least_squares": least_squares,
+    "tolerant": tolerant,
+}
+
+
+def solve(frames, shapes, neutral, method, sigma=0.0, bound=None):
+    """Solve the weights of every frame by one of `SOLVES`.
+
+    Parameters
+    ----------
+    frames : (T, D) float array [feature unit]
+    shapes : (K, D) float array [feature unit]
+    neutral : (D,) float array [feature unit]
+    method : str
+        A name in `SOLVES`.
+    sigma : float
+        Error expected of a sculpt as a share of its distance from the neutral; `tolerant`.
+    bound : float or None
+        Keep weights within ``[-bound, 1 + bound]``, non-negative solves within
+        ``[0, 1 + bound]``; None for no bound. A simplex is bounded by itself.
+
+    Returns
+    -------
+    Solution
+
+    Raises
+    ------
+    ValueError
+        When the shapes do not fit, a value is not finite, or the name is unknown.
+    """
+    frames, shapes = np.asarray(frames, float), np.asarray(shapes, float)
+    neutral = np.asarray(neutral, float)
+    if frames.ndim != 2 or shapes.shape[1:] != neutral.shape or frames.shape[1:] != neutral.shape:
+        raise ValueError(
+            f"frames {frames.shape}, shapes {shapes.shape}, neutral {neutral.shape} do not fit"
+        )
+    if not all(np.isfinite(array).all() for array in (frames, shapes, neutral)):
+        raise ValueError(f"frames {frames.shape} or shapes {shapes.shape} hold NaN or infinity")
+    if method not in SOLVES:
+        raise ValueError(f"no solve is called '{method}': choose one of {', '.join(SOLVES)}")
+    weights, kkt_residual = SOLVES[method](frames, shapes, neutral, sigma, bound)
+    residual = np.linalg.norm(frames - neutral - weights @ (shapes - neutral), axis=1)
+    return Solution(weights, residual, kkt_residual)
+
+
+def _boxed(targets, columns, penalty, least, bound):
+    """Minimise ``|x - sum_i w_i c_i|^2 + sum_i (penalty_i w_i)^2`` above `least` and in `bound`."""
+    low, high = (least, np.inf) if bound is None else (max(least, -bound), 1 + bound)
+    lower, upper = np.full(len(columns), low), np.full(len(columns), high)
+    matrix = np.vstack([columns.T, np.diag(penalty)])
+    padded = np.hstack([targets, np.zeros((len(targets), len(columns)))])
+    weights = box_least_squares.solve(matrix, padded, lower, upper)
+    return weights, box_least_squares.kkt_residual(matrix, padded, lower, upper, weights)
