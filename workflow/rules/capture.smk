@@ -1,37 +1,48 @@
 """From films and labels to tracked points on a constant clock.
 
-Needs a session's films and labels. Makes tracker.npz, label_proposals.tsv, and for each shot
-tracked.parquet (at the film's own times) and performance.parquet (at a constant rate).
+Needs a session's films and labels. Makes tracker.npz and label_proposals.tsv of each session, and
+tracked.parquet (at the film's own times) and performance.parquet (at a constant rate) of each shot.
 """
 
 
-def labelled_shots(session):
-    """Return the rows of a session's shots that have labels."""
-    return [row for row in rows_of(SHOW["shots"], "session", session) if row["labels"]]
+def labelled(column):
+    """Return a function that lists a column of a session's labelled shots."""
 
+    def values(wildcards):
+        rows = rows_of(SHOW["shots"], "session", wildcards.session)
+        return [row[column] for row in rows if row["labels"]]
 
-def label_proposals():
-    """Return the proposals of every session."""
-    return expand(
-        "results/sessions/{session}/label_proposals.tsv", session=cells(SHOW["sessions"], "session")
-    )
+    return values
 
 
 def training_sources(wildcards):
     """Return the films and label tables of a session that exist."""
-    rows = labelled_shots(wildcards.session)
-    return present([row[column] for row in rows for column in ("video", "labels")])
+    return present(labelled("video")(wildcards) + labelled("labels")(wildcards))
 
 
-def film_of(wildcards):
+def film_path(wildcards):
+    """Return the film of a shot."""
+    return row_of(SHOW["shots"], "shot", wildcards.shot)["video"]
+
+
+def film(wildcards):
     """Return the film of a shot if it exists."""
-    return present([row_of(SHOW["shots"], "shot", wildcards.shot)["video"]])
+    return present([film_path(wildcards)])
 
 
-def tracked_of_session(wildcards):
-    """Return the tracked points of all shots of a session."""
-    shots = [row["shot"] for row in rows_of(SHOW["shots"], "session", wildcards.session)]
-    return expand("results/shots/{shot}/tracked.parquet", shot=shots)
+def session_shots(wildcards):
+    """Return the names of a session's shots."""
+    return [row["shot"] for row in rows_of(SHOW["shots"], "session", wildcards.session)]
+
+
+def session_tracked(wildcards):
+    """Return the tracked points of a session's shots."""
+    return expand("results/shots/{shot}/tracked.parquet", shot=session_shots(wildcards))
+
+
+def tracker_of(wildcards):
+    """Return the tracker of a shot's session."""
+    return f"results/sessions/{session_of(wildcards.shot)['session']}/tracker.npz"
 
 
 rule train_tracker:
@@ -40,13 +51,6 @@ rule train_tracker:
         point_set="config/point_set.tsv",
     output:
         tracker="results/sessions/{session}/tracker.npz",
-    params:
-        code=code_of("train_tracker"),
-        shots=lambda w: [row["shot"] for row in labelled_shots(w.session)],
-        videos=lambda w: [row["video"] for row in labelled_shots(w.session)],
-        labels=lambda w: [row["labels"] for row in labelled_shots(w.session)],
-        method=config["tracker_method"],
-        seed=config["seed"],
     log:
         "logs/train_tracker/{session}.log",
     benchmark:
@@ -54,6 +58,13 @@ rule train_tracker:
     conda:
         "../envs/stages.yaml"
     threads: 1
+    params:
+        code=code_of("train_tracker"),
+        shots=labelled("shot"),
+        videos=labelled("video"),
+        labels=labelled("labels"),
+        method=config["tracker_method"],
+        seed=config["seed"],
     shell:
         "python -m stages.train_tracker"
         " --shots {params.shots:q}"
@@ -63,4 +74,76 @@ rule train_tracker:
         " --method {params.method:q}"
         " --seed {params.seed}"
         " --tracker {output.tracker:q}"
+        " 2> {log:q}"
+
+
+rule track_video:
+    input:
+        film,
+        tracker=tracker_of,
+    output:
+        tracked="results/shots/{shot}/tracked.parquet",
+    log:
+        "logs/track_video/{shot}.log",
+    benchmark:
+        "logs/track_video/{shot}.tsv"
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("track_video"),
+        video=film_path,
+    shell:
+        "python -m stages.track_video"
+        " --tracker {input.tracker:q}"
+        " --video {params.video:q}"
+        " --tracked {output.tracked:q}"
+        " 2> {log:q}"
+
+
+rule propose_labels:
+    input:
+        tracked=session_tracked,
+    output:
+        proposals="results/sessions/{session}/label_proposals.tsv",
+    log:
+        "logs/propose_labels/{session}.log",
+    benchmark:
+        "logs/propose_labels/{session}.tsv"
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("propose_labels"),
+        shots=session_shots,
+        labelled_shots=labelled("shot"),
+        labels=labelled("labels"),
+    shell:
+        "python -m stages.propose_labels"
+        " --tracked {input.tracked:q}"
+        " --shots {params.shots:q}"
+        " --labelled-shots {params.labelled_shots:q}"
+        " --labels {params.labels:q}"
+        " --proposals {output.proposals:q}"
+        " 2> {log:q}"
+
+
+rule merge_capture:
+    input:
+        tracked="results/shots/{shot}/tracked.parquet",
+    output:
+        performance="results/shots/{shot}/performance.parquet",
+    log:
+        "logs/merge_capture/{shot}.log",
+    benchmark:
+        "logs/merge_capture/{shot}.tsv"
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("merge_capture"),
+    shell:
+        "python -m stages.merge_capture"
+        " --tracked {input.tracked:q}"
+        " --performance {output.performance:q}"
         " 2> {log:q}"

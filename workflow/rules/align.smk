@@ -1,0 +1,49 @@
+"""Head motion told apart from the face's own motion, against the session's neutral.
+
+Needs performance.parquet. Makes head_motion.parquet and expression.parquet of each shot.
+"""
+
+
+def neutral_of(wildcards):
+    """Return the points of the shot that shows the session's neutral."""
+    return f"results/shots/{session_of(wildcards.shot)['neutral_shot']}/performance.parquet"
+
+
+def session_cell(column):
+    """Return a function that gives a cell of the shot's session."""
+
+    def cell(wildcards):
+        return session_of(wildcards.shot)[column]
+
+    return cell
+
+
+rule align_head:
+    input:
+        performance="results/shots/{shot}/performance.parquet",
+        neutral=neutral_of,
+    output:
+        head_motion="results/shots/{shot}/head_motion.parquet",
+        expression="results/shots/{shot}/expression.parquet",
+    log:
+        "logs/align_head/{shot}.log",
+    benchmark:
+        "logs/align_head/{shot}.tsv"
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("align_head"),
+        neutral_frame=session_cell("neutral_frame"),
+        unit_points=session_cell("unit_points"),
+        head=session_cell("head"),
+    shell:
+        "python -m stages.align_head"
+        " --performance {input.performance:q}"
+        " --neutral {input.neutral:q}"
+        " --neutral-frame {params.neutral_frame}"
+        " --unit-points {params.unit_points:q}"
+        " --head {params.head:q}"
+        " --head-motion {output.head_motion:q}"
+        " --expression {output.expression:q}"
+        " 2> {log:q}"

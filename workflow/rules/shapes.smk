@@ -1,0 +1,116 @@
+"""Key shapes of an actor, and the brief from which an artist sculpts them.
+
+Needs expression.parquet of the actor's basis shots. Makes pca.npz, key_shapes.parquet,
+key_shape_errors.parquet and the brief of each actor, and the state of each character's sculpts.
+"""
+
+
+def briefs():
+    """Return the brief of every actor."""
+    actors = sorted(set(cells(SHOW["sessions"], "actor")))
+    return expand("results/actors/{actor}/brief/index.html", actor=actors)
+
+
+def basis_shots(wildcards):
+    """Return the names of an actor's basis shots."""
+    return [row["shot"] for row in shots_of(wildcards.actor, basis=["yes"])]
+
+
+def basis_expressions(wildcards):
+    """Return the expressions of an actor's basis shots."""
+    return expand("results/shots/{shot}/expression.parquet", shot=basis_shots(wildcards))
+
+
+def basis_films(wildcards):
+    """Return the films of an actor's basis shots that exist."""
+    return present([row["video"] for row in shots_of(wildcards.actor, basis=["yes"])])
+
+
+def basis_film_paths(wildcards):
+    """Return the films of an actor's basis shots."""
+    return [row["video"] for row in shots_of(wildcards.actor, basis=["yes"])]
+
+
+def basis_tracked(wildcards):
+    """Return the tracked points of an actor's basis shots."""
+    return expand("results/shots/{shot}/tracked.parquet", shot=basis_shots(wildcards))
+
+
+def lock_rows(wildcards):
+    """Return an actor's rows of key_shapes.tsv: only they change the actor's key shapes."""
+    rows = rows_of(SHOW["key_shapes"], "actor", wildcards.actor)
+    return ["{region}:{shot}:{frame}:{state}".format(**row) for row in rows]
+
+
+def sculpt_states(wildcards):
+    """Return the states of the sculpts of all characters that an actor plays."""
+    names = [row["character"] for row in characters_of(wildcards.actor)]
+    return expand(
+        "results/cast/{actor}/{character}/sculpts.parquet", actor=wildcards.actor, character=names
+    )
+
+
+rule fit_pca:
+    input:
+        expressions=basis_expressions,
+        regions="config/regions.tsv",
+    output:
+        pca="results/actors/{actor}/pca.npz",
+    log:
+        "logs/fit_pca/{actor}.log",
+    benchmark:
+        "logs/fit_pca/{actor}.tsv"
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("fit_pca"),
+        shots=basis_shots,
+        min_confidence=config["min_confidence"],
+    shell:
+        "python -m stages.fit_pca"
+        " --expressions {input.expressions:q}"
+        " --shots {params.shots:q}"
+        " --regions {input.regions:q}"
+        " --min-confidence {params.min_confidence}"
+        " --pca {output.pca:q}"
+        " 2> {log:q}"
+
+
+rule select_key_shapes:
+    input:
+        expressions=basis_expressions,
+        pca="results/actors/{actor}/pca.npz",
+        regions="config/regions.tsv",
+        region_settings="config/region_settings.tsv",
+        locks=ancient("config/key_shapes.tsv"),
+    output:
+        key_shapes="results/actors/{actor}/key_shapes.parquet",
+        errors="results/actors/{actor}/key_shape_errors.parquet",
+    log:
+        "logs/select_key_shapes/{actor}.log",
+    benchmark:
+        "logs/select_key_shapes/{actor}.tsv"
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("select_key_shapes"),
+        shots=basis_shots,
+        lock_rows=lock_rows,
+        min_confidence=config["min_confidence"],
+        seed=config["seed"],
+    shell:
+        "python -m stages.select_key_shapes"
+        " --expressions {input.expressions:q}"
+        " --shots {params.shots:q}"
+        " --regions {input.regions:q}"
+        " --region-settings {input.region_settings:q}"
+        " --key-shape-table {input.locks:q}"
+        " --actor {wildcards.actor:q}"
+        " --pca {input.pca:q}"
+        " --min-confidence {params.min_confidence}"
+        " --seed {params.seed}"
+        " --key-shapes {output.key_shapes:q}"
+        " --errors {output.errors:q}"
+        " 2> {log:q}"
