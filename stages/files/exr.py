@@ -1,0 +1,143 @@
+"""`mesh.exr`: float32 vertex positions as a picture, and the JSON beside it that says how.
+
+Channels R, G, B hold x, y, z in the character's own unit and axes. Row = frame * blocks + block,
+column = vertex - block * width; block = vertex // width. What is left of the last block repeats
+the frame's last vertex, so that the picture has no values outside the bounds. `mesh.json` holds:
+
+layout_version, frames, vertices, width, blocks, fps_num, fps_den, first_frame (its time is
+first_frame * fps_den / fps_num seconds after the film's first picture), axes (up, and the
+file's own right-handed x, y, z as R, G, B), unit, metres_per_unit, bounds (exact minimum and
+maximum over all frames), quantisation (type and greatest rounding error, in the unit) and
+vertex_hash (sha256 over the neutral's float32 positions and its polygons).
+"""
+
+import contextlib
+import json
+from collections.abc import Callable, Iterator
+from fractions import Fraction
+from pathlib import Path
+
+import Imath
+import numpy as np
+import OpenEXR
+
+from stages.files import errors
+
+LAYOUT_VERSION = 1
+MAX_WIDTH = 8192
+CHANNELS = ("R", "G", "B")
+FLOAT32_ROUNDING = 2.0**-24
+
+
+def layout(vertices: int, max_width: int = MAX_WIDTH) -> tuple[int, int]:
+    """Return width and blocks: the fewest blocks that fit, then the narrowest rows."""
+    blocks = -(-vertices // max_width)
+    return -(-vertices // blocks), blocks
+
+
+@contextlib.contextmanager
+def writer(
+    path: str | Path, vertices: int, frames: int, max_width: int = MAX_WIDTH
+) -> Iterator[Callable[[np.ndarray], None]]:
+    """Yield a function that appends one frame, a (V, 3) float array."""
+    width, blocks = layout(vertices, max_width)
+    file = OpenEXR.OutputFile(str(path), OpenEXR.Header(width, frames * blocks))
+    # beyond the last vertex the index stays on it
+    places = np.minimum(np.arange(width * blocks), vertices - 1)
+
+    def append(positions: np.ndarray) -> None:
+        rows = np.asarray(positions, np.float32)[places]
+        planes = {name: rows[:, axis].tobytes() for axis, name in enumerate(CHANNELS)}
+        file.writePixels(planes, blocks)
+
+    try:
+        yield append
+    finally:
+        file.close()
+
+
+def write_json(
+    path: str | Path,
+    vertices: int,
+    frames: int,
+    first_frame: int,
+    rate: Fraction,
+    bounds: np.ndarray,
+    form: dict,
+    max_width: int = MAX_WIDTH,
+) -> None:
+    """Write the description of a baked mesh.
+
+    Parameters
+    ----------
+    path : the file
+    vertices, frames, first_frame : counts, and the number of the first frame
+    rate : frames per second
+    bounds : (2, 3) float array, minimum and maximum over the take [character's unit]
+    form : the character's `axes`, `unit`, `metres_per_unit` and `vertex_hash`
+    max_width : widest row
+    """
+    width, blocks = layout(vertices, max_width)
+    error = float(np.abs(bounds).max() * FLOAT32_ROUNDING)
+    description = {
+        "layout_version": LAYOUT_VERSION,
+        "frames": frames,
+        "vertices": vertices,
+        "width": width,
+        "blocks": blocks,
+        "fps_num": Fraction(rate).numerator,
+        "fps_den": Fraction(rate).denominator,
+        "first_frame": first_frame,
+        "bounds": {"min": bounds[0].tolist(), "max": bounds[1].tolist()},
+        "quantisation": {"type": "float32", "max_error": error},
+    } | form
+    Path(path).write_text(json.dumps(description, indent=2) + "\n", encoding="utf-8")
+
+
+def read_json(path: str | Path) -> dict:
+    """Read the description of a baked mesh.
+
+    Raises
+    ------
+    errors.InputError
+        if the file is none, or of another layout
+    """
+    try:
+        description = json.loads(Path(path).read_text(encoding="utf-8"))
+    except (json.JSONDecodeError, UnicodeDecodeError) as error:
+        raise errors.InputError(path, f"no JSON: {error}; bake the take again") from error
+    if description.get("layout_version") != LAYOUT_VERSION:
+        found = description.get("layout_version")
+        message = f"layout version {found} in place of {LAYOUT_VERSION}: bake the take again"
+        raise errors.InputError(path, message)
+    return description
+
+
+class Reader:
+    """Baked positions, read a frame at a time.
+
+    Parameters
+    ----------
+    path : the EXR file
+    description : what `read_json` gave
+    """
+
+    def __init__(self, path: str | Path, description: dict):
+        self.vertices, self.blocks = description["vertices"], description["blocks"]
+        self.frames = description["frames"]
+        try:
+            self._file = OpenEXR.InputFile(str(path))
+        except OSError as error:
+            raise errors.InputError(path, f"no EXR file ({error}): bake again") from error
+        window = self._file.header()["dataWindow"]
+        rows, width = window.max.y + 1, window.max.x + 1
+        if (rows, width) != (self.frames * self.blocks, description["width"]):
+            message = f"is {width} x {rows} in place of what its JSON says: bake the take again"
+            raise errors.InputError(path, message)
+
+    def frame(self, index: int) -> np.ndarray:
+        """Return the (V, 3) float32 positions of a frame, counted from 0."""
+        rows = (index * self.blocks, (index + 1) * self.blocks - 1)
+        kind = Imath.PixelType(Imath.PixelType.FLOAT)
+        planes = [np.frombuffer(self._file.channel(n, kind, *rows), "<f4") for n in CHANNELS]
+        return np.stack(planes, axis=1)[: self.vertices]

@@ -1,0 +1,229 @@
+"""`mesh.glb`: the moving character as glTF 2.0 morph targets, evaluated by any viewer.
+
+Nodes: `character` (constant: the file's axes and unit to glTF's y up and metres) > `head`
+(animated: translation pivot + face_unit t, rotation, scale) > `mesh` (translation -pivot, and
+animated weights). Below `character`, evaluating gives exactly the positions of `mesh.exr`.
+One morph target for each shape that is not zero under its mask, as a sparse accessor; its name is
+in `mesh.extras.targetNames`. Vertices are the file's, one to one; polygons are cut into fans.
+"""
+
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+import pygltflib as gltf
+
+from stages.files import rig
+
+UPRIGHT = {"y": [0.0, 0.0, 0.0, 1.0], "z": [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]}
+KINDS = {1: gltf.SCALAR, 3: gltf.VEC3, 4: gltf.VEC4}
+
+
+@dataclasses.dataclass(frozen=True)
+class Surface:
+    """What a viewer draws of a character.
+
+    Attributes
+    ----------
+    triangles : (N, 3) int array
+    normals : (V, 3) float array, of the neutral
+    masked : (K, V, 3) float array, the shapes' differences under their masks [unit]
+    """
+
+    triangles: np.ndarray
+    normals: np.ndarray
+    masked: np.ndarray
+
+
+@dataclasses.dataclass(frozen=True)
+class Motion:
+    """How a character moves, in its own axes and unit.
+
+    Attributes
+    ----------
+    times : (T,) float array [s]
+    weights : (T, K) float array
+    rotation : (T, 4) float array, quaternions x, y, z, w of length one
+    translation : (T, 3) float array [unit]
+    scale : (T,) float array
+    """
+
+    times: np.ndarray
+    weights: np.ndarray
+    rotation: np.ndarray
+    translation: np.ndarray
+    scale: np.ndarray
+
+
+class _Buffer:
+    """The binary part of a GLB while it grows, and the views and accessors into it."""
+
+    def __init__(self):
+        self.data = bytearray()
+        self.views: list[gltf.BufferView] = []
+        self.accessors: list[gltf.Accessor] = []
+
+    def view(self, array: np.ndarray, target: int | None = None) -> int:
+        """Append an array, aligned to four bytes; return the number of its view."""
+        self.data.extend(b"\0" * (-len(self.data) % 4))
+        view = gltf.BufferView(
+            buffer=0, byteOffset=len(self.data), byteLength=array.nbytes, target=target
+        )
+        self.data.extend(array.tobytes())
+        self.views.append(view)
+        return len(self.views) - 1
+
+    def dense(self, values: np.ndarray, target: int | None = None) -> int:
+        """Append (N, C) or (N,) float32 values; return the number of their accessor."""
+        rows = np.ascontiguousarray(values, "<f4").reshape(len(values), -1)
+        accessor = gltf.Accessor(
+            bufferView=self.view(rows, target),
+            componentType=gltf.FLOAT,
+            count=len(rows),
+            type=KINDS[rows.shape[1]],
+            min=rows.min(axis=0).tolist(),
+            max=rows.max(axis=0).tolist(),
+        )
+        self.accessors.append(accessor)
+        return len(self.accessors) - 1
+
+    def indices(self, triangles: np.ndarray) -> int:
+        """Append the vertex indices of triangles; return the number of their accessor."""
+        flat = np.ascontiguousarray(triangles, "<u4").ravel()
+        view = self.view(flat, gltf.ELEMENT_ARRAY_BUFFER)
+        self.accessors.append(
+            gltf.Accessor(
+                bufferView=view,
+                componentType=gltf.UNSIGNED_INT,
+                count=len(flat),
+                type=gltf.SCALAR,
+            )
+        )
+        return len(self.accessors) - 1
+
+    def sparse(self, values: np.ndarray) -> int:
+        """Append (V, 3) float32 values, mostly zero rows; return the number of their accessor."""
+        rows = np.ascontiguousarray(values, "<f4")
+        filled = np.flatnonzero(rows.any(axis=1))
+        places = gltf.AccessorSparseIndices(
+            bufferView=self.view(filled.astype("<u4")), componentType=gltf.UNSIGNED_INT
+        )
+        stored = gltf.AccessorSparseValues(bufferView=self.view(rows[filled]))
+        self.accessors.append(
+            gltf.Accessor(
+                componentType=gltf.FLOAT,
+                count=len(rows),
+                type=gltf.VEC3,
+                min=rows.min(axis=0).tolist(),
+                max=rows.max(axis=0).tolist(),
+                sparse=gltf.Sparse(count=len(filled), indices=places, values=stored),
+            )
+        )
+        return len(self.accessors) - 1
+
+
+def write(path: str | Path, character: rig.Rig, surface: Surface, motion: Motion) -> None:
+    """Write a moving character.
+
+    Parameters
+    ----------
+    path : the GLB file
+    character : the rig of a mesh
+    surface : how it looks
+    motion : how it moves
+    """
+    buffer = _Buffer()
+    used = np.flatnonzero(surface.masked.astype(np.float32).any(axis=(1, 2)))
+    document = gltf.GLTF2(
+        scene=0,
+        scenes=[gltf.Scene(nodes=[0])],
+        nodes=_nodes(character, motion),
+        meshes=[_mesh(buffer, character, surface, used)],
+        materials=[_material()],
+        animations=[_animation(buffer, character, motion, used)],
+    )
+    document.accessors, document.bufferViews = buffer.accessors, buffer.views
+    document.buffers = [gltf.Buffer(byteLength=len(buffer.data))]
+    document.set_binary_blob(bytes(buffer.data))
+    document.save_binary(str(path))
+
+
+def _nodes(character: rig.Rig, motion: Motion) -> list[gltf.Node]:
+    """Return the three nodes, at rest in the first frame's pose."""
+    upright = gltf.Node(
+        name="character",
+        children=[1],
+        rotation=UPRIGHT[character.up_axis],
+        scale=[rig.METRES[character.unit]] * 3,
+    )
+    head = gltf.Node(
+        name="head",
+        children=[2],
+        translation=_places(character, motion)[0].tolist(),
+        rotation=motion.rotation[0].tolist(),
+        scale=[float(motion.scale[0])] * 3,
+    )
+    return [upright, head, gltf.Node(name="mesh", mesh=0, translation=(-character.pivot).tolist())]
+
+
+def _places(character: rig.Rig, motion: Motion) -> np.ndarray:
+    """Return the (T, 3) translations of the head's node."""
+    return character.pivot + motion.translation
+
+
+def _material() -> gltf.Material:
+    """Return a matt material, seen from both sides so that a flat drawing shows."""
+    matt = gltf.PbrMetallicRoughness(metallicFactor=0.0, roughnessFactor=0.8)
+    return gltf.Material(name="skin", pbrMetallicRoughness=matt, doubleSided=True)
+
+
+def _mesh(buffer: _Buffer, character: rig.Rig, surface: Surface, used: np.ndarray) -> gltf.Mesh:
+    """Return the mesh with its morph targets."""
+    attributes = gltf.Attributes(
+        POSITION=buffer.dense(character.neutral, gltf.ARRAY_BUFFER),
+        NORMAL=buffer.dense(surface.normals, gltf.ARRAY_BUFFER),
+    )
+    if len(character.colours):
+        attributes.COLOR_0 = buffer.dense(_linear(character.colours), gltf.ARRAY_BUFFER)
+    primitive = gltf.Primitive(
+        attributes=attributes,
+        indices=buffer.indices(surface.triangles),
+        material=0,
+        targets=[{"POSITION": buffer.sparse(surface.masked[shape])} for shape in used],
+    )
+    names = [character.names[shape] for shape in used]
+    return gltf.Mesh(
+        name="face",
+        primitives=[primitive],
+        weights=[0.0] * len(used),
+        extras={"targetNames": names},
+    )
+
+
+def _linear(colours: np.ndarray) -> np.ndarray:
+    """Return the light of sRGB colours, which is what COLOR_0 holds (IEC 61966-2-1)."""
+    return np.where(colours <= 0.04045, colours / 12.92, ((colours + 0.055) / 1.055) ** 2.4)
+
+
+def _animation(
+    buffer: _Buffer, character: rig.Rig, motion: Motion, used: np.ndarray
+) -> gltf.Animation:
+    """Return the animation: three channels of the head, one of weights."""
+    times = buffer.dense(motion.times)
+    curves = [
+        (1, "translation", _places(character, motion)),
+        (1, "rotation", motion.rotation),
+        (1, "scale", np.repeat(motion.scale[:, None], 3, axis=1)),
+    ]
+    if len(used):
+        curves.append((2, "weights", motion.weights[:, used].ravel()))
+    samplers = [
+        gltf.AnimationSampler(input=times, output=buffer.dense(values)) for *_, values in curves
+    ]
+    channels = [
+        gltf.AnimationChannel(
+            sampler=number, target=gltf.AnimationChannelTarget(node=node, path=path)
+        )
+        for number, (node, path, _) in enumerate(curves)
+    ]
+    return gltf.Animation(name="take", samplers=samplers, channels=channels)
