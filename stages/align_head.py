@@ -15,8 +15,6 @@ from stages import cli
 from stages.core import planar_motion
 from stages.files import errors, point_set, series
 
-SHEAR_DEVIATION = 0.1  # a head turned by 25 degrees is foreshortened by a tenth
-
 
 def build_parser() -> argparse.ArgumentParser:
     """Return the parser of the stage's command line."""
@@ -32,6 +30,7 @@ def build_parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--head", required=True, choices=["remove", "none"], help="see sessions.tsv"
     )
+    parser.add_argument("--seed", required=True, type=int, help="seed of the draw of point pairs")
     parser.add_argument("--head-motion", required=True, help="motion of each frame, .parquet")
     parser.add_argument("--expression", required=True, help="points without it, .parquet")
     return parser
@@ -46,8 +45,8 @@ def main(argv: Sequence[str]) -> None:
     points_px = series.stack(performance, arguments.performance, names)
     points, neutral = (_face_units(pixels, ends) for pixels in (points_px, neutral_px))
     if arguments.head == "remove":
-        deviation = planar_motion.clip_deviation(points, neutral, SHEAR_DEVIATION)
-        linear, translation = planar_motion.fit(points, neutral, deviation, SHEAR_DEVIATION)
+        deviation = planar_motion.clip_deviation(points, neutral, _votes(names), arguments.seed)
+        linear, translation = planar_motion.fit(points, neutral, deviation)
     else:
         linear = np.tile(np.eye(2), (len(points), 1, 1))
         translation = np.zeros((len(points), 2))
@@ -90,6 +89,12 @@ def _neutral(arguments: argparse.Namespace, names: Sequence[str]) -> tuple[np.nd
             raise errors.InputError(arguments.neutral, message)
         ends.append(neutral[chosen].mean(axis=0))
     return neutral, np.array(ends)
+
+
+def _votes(names: Sequence[str]) -> np.ndarray:
+    """Return one vote for each contour, shared by its points: lips must not outvote the rest."""
+    contours = [point_set.contour_of(name) for name in names]
+    return np.array([1 / contours.count(contour) for contour in contours])
 
 
 def _face_units(pixels: np.ndarray, ends: np.ndarray) -> np.ndarray:

@@ -37,6 +37,7 @@ rule align_head:
         neutral_frame=session_cell("neutral_frame"),
         unit_points=session_cell("unit_points"),
         head=session_cell("head"),
+        seed=config["seed"],
     shell:
         "python -m stages.align_head"
         " --performance {input.performance:q}"
@@ -44,6 +45,7 @@ rule align_head:
         " --neutral-frame {params.neutral_frame}"
         " --unit-points {params.unit_points:q}"
         " --head {params.head:q}"
+        " --seed {params.seed}"
         " --head-motion {output.head_motion:q}"
         " --expression {output.expression:q}"
         " 2> {log:q}"
