@@ -40,8 +40,8 @@ def fit(
     """Fit an affine motion to every frame.
 
     Minimises, for each frame, `sum_p |x_p - A n_p - t|^2 / s_p^2 + |D|^2 / r^2`, where `D` is the
-    part of `A` that is no similarity and `r` its expected size, so that a foreshortened head is followed and the stretch of
-    an opening mouth is not.
+    part of `A` that is no similarity and `r` its expected size, so that a foreshortened head is
+    followed and the stretch of an opening mouth is not.
 
     Parameters
     ----------
@@ -140,9 +140,9 @@ def clip_deviation(
 
     Starts from `consensus_deviation` and repeats it a few times with the motion that it gives.
     The result is the square of the deviation over its median: many points of one jaw move
-    together, so they must count far less than as many points with errors of their own. (Estimating the
-    variances by expectation maximisation instead was tried: it assumes errors of their own, and
-    ends with the jaw as the head.)
+    together, so they must count far less than as many points with errors of their own.
+    (Estimating the variances by expectation maximisation instead was tried: it assumes errors of
+    their own, and ends with the jaw as the head.)
 
     Parameters
     ----------

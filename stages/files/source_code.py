@@ -9,23 +9,22 @@ stand at a module's top.
 import ast
 import functools
 import hashlib
-import importlib.util
 from pathlib import Path
 
 PACKAGE = "stages"
+PACKAGE_FOLDER = Path(__file__).parents[1]
 
 
 def _source_of(module: str) -> Path | None:
     """Return the file of a module of the package; None where the name is no module."""
-    root = importlib.util.find_spec(PACKAGE).submodule_search_locations[0]
-    path = Path(root).joinpath(*module.split(".")[1:])
+    path = PACKAGE_FOLDER.joinpath(*module.split(".")[1:])
     if (path / "__init__.py").is_file():
         return path / "__init__.py"
     return path.with_suffix(".py") if path.with_suffix(".py").is_file() else None
 
 
 @functools.cache
-def _parsed(module: str) -> tuple[str, tuple[str, ...]]:
+def parsed(module: str) -> tuple[str, tuple[str, ...]]:
     """Return the dump of a module's syntax tree without docstrings, and what it imports."""
     tree = ast.parse(_source_of(module).read_text(encoding="utf-8"))
     imported = []
@@ -57,7 +56,7 @@ def modules_reached(module: str) -> list[str]:
         name = waiting.pop()
         if name not in reached:
             reached.add(name)
-            waiting += _parsed(name)[1]
+            waiting += parsed(name)[1]
     return sorted(reached)
 
 
@@ -65,5 +64,5 @@ def digest(module: str) -> str:
     """Return the sha256 over the code of a module and of all that it reaches by import."""
     sums = hashlib.sha256()
     for name in modules_reached(module):
-        sums.update(f"{name}\0{_parsed(name)[0]}\0".encode())
+        sums.update(f"{name}\0{parsed(name)[0]}\0".encode())
     return sums.hexdigest()
