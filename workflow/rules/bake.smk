@@ -1,0 +1,204 @@
+"""From weights and sculpts to a moving character.
+
+Needs key_weights.parquet, head_motion.parquet and the character's folder. Makes the state of the
+sculpts and rig.npz of each actor and character, and for each take weights.parquet, weights.csv and
+the mesh (mesh.exr, mesh.json, mesh.pc2, mesh.glb) or the curves of named controls.
+"""
+
+
+def character_cell(column):
+    """Return a function that gives a cell of the character's row."""
+
+    def cell(wildcards):
+        return row_of(SHOW["characters"], "character", wildcards.character)[column]
+
+    return cell
+
+
+def character_path(column):
+    """Return a function that gives the path of a file in the character's folder."""
+
+    def path(wildcards):
+        row = row_of(SHOW["characters"], "character", wildcards.character)
+        return str(Path(row["folder"], row[column]))
+
+    return path
+
+
+def character_source(column):
+    """Return a function that gives a file of the character's folder if it exists."""
+
+    def source(wildcards):
+        return present([character_path(column)(wildcards)])
+
+    return source
+
+
+def sculpt_folder(wildcards):
+    """Return the folder of a character's sculpts."""
+    row = row_of(SHOW["characters"], "character", wildcards.character)
+    return str(Path(row["folder"], "sculpts"))
+
+
+def sculpts(wildcards):
+    """Return the sculpts of a character, sorted: editing, adding or removing one is noticed."""
+    return sculpts_of(wildcards.character)
+
+
+def rig_of(wildcards):
+    """Return the rig of a take's actor and character."""
+    actor = session_of(wildcards.shot)["actor"]
+    return f"results/cast/{actor}/{wildcards.character}/rig.npz"
+
+
+rule check_sculpts:
+    input:
+        character_source("neutral"),
+        sculpts=sculpts,
+        key_shapes="results/actors/{actor}/key_shapes.parquet",
+    output:
+        states="results/cast/{actor}/{character}/sculpts.parquet",
+    log:
+        "logs/check_sculpts/{actor}/{character}.log",
+    benchmark:
+        "logs/check_sculpts/{actor}/{character}.tsv"
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("check_sculpts"),
+        neutral=character_path("neutral"),
+        sculpt_folder=sculpt_folder,
+    shell:
+        "python -m stages.check_sculpts"
+        " --key-shapes {input.key_shapes:q}"
+        " --neutral {params.neutral:q}"
+        " --sculpts {input.sculpts:q}"
+        " --sculpt-folder {params.sculpt_folder:q}"
+        " --character {wildcards.character:q}"
+        " --sculpts-state {output.states:q}"
+        " 2> {log:q}"
+
+
+rule assemble_rig:
+    input:
+        character_source("neutral"),
+        character_source("masks"),
+        sculpts=sculpts,
+        key_shapes="results/actors/{actor}/key_shapes.parquet",
+    output:
+        rig="results/cast/{actor}/{character}/rig.npz",
+    log:
+        "logs/assemble_rig/{actor}/{character}.log",
+    benchmark:
+        "logs/assemble_rig/{actor}/{character}.tsv"
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("assemble_rig"),
+        neutral=character_path("neutral"),
+        masks=character_path("masks"),
+        sculpt_folder=sculpt_folder,
+        unit=character_cell("unit"),
+        up_axis=character_cell("up_axis"),
+        pivot=character_cell("pivot"),
+        face_unit=character_cell("face_unit"),
+    shell:
+        "python -m stages.assemble_rig"
+        " --key-shapes {input.key_shapes:q}"
+        " --neutral {params.neutral:q}"
+        " --sculpts {input.sculpts:q}"
+        " --sculpt-folder {params.sculpt_folder:q}"
+        " --masks {params.masks:q}"
+        " --unit {params.unit:q}"
+        " --up-axis {params.up_axis:q}"
+        " --pivot={params.pivot:q}"
+        " --face-unit {params.face_unit}"
+        " --rig {output.rig:q}"
+        " 2> {log:q}"
+
+
+rule smooth_weights:
+    input:
+        key_weights="results/shots/{shot}/key_weights.parquet",
+        head_motion="results/shots/{shot}/head_motion.parquet",
+        rig=rig_of,
+    output:
+        weights="results/takes/{shot}/{character}/weights.parquet",
+        csv="results/takes/{shot}/{character}/weights.csv",
+    log:
+        "logs/smooth_weights/{shot}/{character}.log",
+    benchmark:
+        "logs/smooth_weights/{shot}/{character}.tsv"
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("smooth_weights"),
+        rate=character_cell("rate"),
+        head=character_cell("head"),
+    shell:
+        "python -m stages.smooth_weights"
+        " --key-weights {input.key_weights:q}"
+        " --head-motion {input.head_motion:q}"
+        " --rig {input.rig:q}"
+        " --rate {params.rate:q}"
+        " --head {params.head:q}"
+        " --weights {output.weights:q}"
+        " --csv {output.csv:q}"
+        " 2> {log:q}"
+
+
+rule bake_mesh:
+    input:
+        rig=rig_of,
+        weights="results/takes/{shot}/{character}/weights.parquet",
+    output:
+        exr="results/takes/{shot}/{character}/mesh.exr",
+        json="results/takes/{shot}/{character}/mesh.json",
+        pc2="results/takes/{shot}/{character}/mesh.pc2",
+        glb="results/takes/{shot}/{character}/mesh.glb",
+    log:
+        "logs/bake_mesh/{shot}/{character}.log",
+    benchmark:
+        "logs/bake_mesh/{shot}/{character}.tsv"
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("bake_mesh"),
+    shell:
+        "python -m stages.bake_mesh"
+        " --rig {input.rig:q}"
+        " --weights {input.weights:q}"
+        " --exr {output.exr:q}"
+        " --json {output.json:q}"
+        " --pc2 {output.pc2:q}"
+        " --glb {output.glb:q}"
+        " 2> {log:q}"
+
+
+rule bake_controls:
+    input:
+        rig=rig_of,
+        weights="results/takes/{shot}/{character}/weights.parquet",
+    output:
+        controls="results/takes/{shot}/{character}/controls.parquet",
+        csv="results/takes/{shot}/{character}/controls.csv",
+    log:
+        "logs/bake_controls/{shot}/{character}.log",
+    benchmark:
+        "logs/bake_controls/{shot}/{character}.tsv"
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("bake_controls"),
+    shell:
+        "python -m stages.bake_controls"
+        " --rig {input.rig:q}"
+        " --weights {input.weights:q}"
+        " --controls {output.controls:q}"
+        " --csv {output.csv:q}"
+        " 2> {log:q}"

@@ -1,0 +1,56 @@
+"""What people look at.
+
+Needs a take's mesh and its shot's film and tracked points. Makes preview.mp4.
+"""
+
+
+def takes():
+    """Return what shows that a take is done: a preview of a mesh, or the curves of controls."""
+    made = []
+    for shot, character in cast_takes():
+        neutral = row_of(SHOW["characters"], "character", character)["neutral"]
+        name = "controls.csv" if neutral.endswith(".csv") else "preview.mp4"
+        made.append(f"results/takes/{shot}/{character}/{name}")
+    return made
+
+
+rule render_preview:
+    input:
+        film,
+        tracked="results/shots/{shot}/tracked.parquet",
+        point_set="config/point_set.tsv",
+        regions="config/regions.tsv",
+        exr="results/takes/{shot}/{character}/mesh.exr",
+        json="results/takes/{shot}/{character}/mesh.json",
+        rig=rig_of,
+    output:
+        preview=report(
+            "results/takes/{shot}/{character}/preview.mp4",
+            caption="../report/preview.rst",
+            category="Takes",
+            subcategory="{shot}",
+            labels={"character": "{character}"},
+        ),
+    log:
+        "logs/render_preview/{shot}/{character}.log",
+    benchmark:
+        "logs/render_preview/{shot}/{character}.tsv"
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("render_preview"),
+        video=film_path,
+    shell:
+        "python -m stages.render_preview"
+        " --video {params.video:q}"
+        " --tracked {input.tracked:q}"
+        " --point-set {input.point_set:q}"
+        " --regions {input.regions:q}"
+        " --exr {input.exr:q}"
+        " --json {input.json:q}"
+        " --rig {input.rig:q}"
+        " --shot {wildcards.shot:q}"
+        " --character {wildcards.character:q}"
+        " --preview {output.preview:q}"
+        " 2> {log:q}"
