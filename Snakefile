@@ -23,3 +23,11 @@ rule all:
         label_proposals(),
         briefs(),
         takes(),
+
+
+onsuccess:
+    shell(report_command())
+
+
+onerror:
+    shell(report_command())

@@ -1,6 +1,7 @@
 """Tables, their validation, wildcards and input functions; no rules."""
 
 import os
+import shlex
 import sys
 from pathlib import Path
 

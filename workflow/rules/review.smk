@@ -54,3 +54,18 @@ rule render_preview:
         " --character {wildcards.character:q}"
         " --preview {output.preview:q}"
         " 2> {log:q}"
+
+
+def report_command():
+    """Return the command that writes the run's report from what exists."""
+    shots = []
+    for row in SHOW["shots"]:
+        session = session_of(row.cells["shot"])
+        shots.append(f"{session['actor']}/{session['session']}/{row.cells['shot']}")
+    played = [f"{shot}/{character}" for shot, character in cast_takes()]
+    template = Path(workflow.basedir, "stages", "templates", "report.html")
+    return shlex.join(
+        ["python", "-m", "stages.write_report", "--results", "results", "--logs", "logs"]
+        + ["--shots", *shots, "--takes", *played, "--template", str(template)]
+        + ["--report", "results/report/index.html"]
+    )
