@@ -124,7 +124,8 @@ class Reader:
 
     def __init__(self, path: str | Path, description: dict):
         self.vertices, self.blocks = description["vertices"], description["blocks"]
-        self.frames = description["frames"]
+        self.frames, self.first_frame = description["frames"], description["first_frame"]
+        self.rate = Fraction(description["fps_num"], description["fps_den"])
         try:
             self._file = OpenEXR.InputFile(str(path))
         except OSError as error:
@@ -134,6 +135,10 @@ class Reader:
         if (rows, width) != (self.frames * self.blocks, description["width"]):
             message = f"is {width} x {rows} in place of what its JSON says: bake the take again"
             raise errors.InputError(path, message)
+
+    def nearest(self, time_s: float) -> int:
+        """Return the frame, counted from 0, that plays at a time [s]; the ends are held."""
+        return min(max(round(time_s * self.rate) - self.first_frame, 0), self.frames - 1)
 
     def frame(self, index: int) -> np.ndarray:
         """Return the (V, 3) float32 positions of a frame, counted from 0."""

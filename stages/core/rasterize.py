@@ -1,0 +1,98 @@
+"""Pictures of meshes by OpenCV's rasteriser on the processor: no display, no graphics card."""
+
+import dataclasses
+
+import cv2
+import numpy as np
+
+FIELD_OF_VIEW = np.deg2rad(22.0)
+MARGIN = 1.08
+SUPERSAMPLING = 2
+TOP = (0.36, 0.37, 0.40)
+BOTTOM = (0.17, 0.17, 0.19)
+
+
+@dataclasses.dataclass(frozen=True)
+class Camera:
+    """A camera that does not move.
+
+    Attributes
+    ----------
+    world_to_camera : (4, 4) float array; the camera looks along -z, y up
+    near, far : distances between which things are seen
+    """
+
+    world_to_camera: np.ndarray
+    near: float
+    far: float
+
+
+def facing_camera(low: np.ndarray, high: np.ndarray, face_axes: np.ndarray) -> Camera:
+    """Place a camera before a face so that a box fits a square picture.
+
+    Parameters
+    ----------
+    low, high : (3,) float arrays, corners of the box
+    face_axes : (3, 3) rotation whose columns are the face's left, up and forward directions
+
+    Returns
+    -------
+    Camera
+    """
+    rotation = face_axes.T
+    corners = np.stack([rotation @ low, rotation @ high])
+    half = np.abs(corners[1] - corners[0]) / 2
+    reach = max(MARGIN * max(half[0], half[1]) / np.tan(FIELD_OF_VIEW / 2), np.linalg.norm(half))
+    distance = reach + half[2]
+    matrix = np.eye(4)
+    matrix[:3, :3] = rotation
+    matrix[:3, 3] = -rotation @ (low + high) / 2 - [0.0, 0.0, distance]
+    return Camera(matrix, reach / 2, distance + half[2] + reach)
+
+
+def backdrop(side: int) -> np.ndarray:
+    """Return what is behind a picture of (side, side) pixels: neutral, lighter above.
+
+    Returns
+    -------
+    (n side, n side, 3) float32 array, n-fold for the smoothing of edges
+    """
+    side *= SUPERSAMPLING
+    share = np.linspace(0.0, 1.0, side)[:, None, None]
+    row = (1 - share) * np.array(TOP) + share * np.array(BOTTOM)
+    return np.ascontiguousarray(np.broadcast_to(row, (side, side, 3)), np.float32)
+
+
+def draw(
+    vertices: np.ndarray,
+    triangles: np.ndarray,
+    colours: np.ndarray,
+    camera: Camera,
+    behind: np.ndarray,
+) -> np.ndarray:
+    """Draw a mesh over a backdrop with smooth colours, hidden parts hidden and smooth edges.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float32 array
+    triangles : (N, 3) int32 array
+    colours : (V, 3) float32 array in 0..1
+    camera : where it is seen from
+    behind : (n S, n S, 3) float32 array from `backdrop`
+
+    Returns
+    -------
+    (S, S, 3) uint8 array
+    """
+    picture = behind.copy()
+    depth = np.full(picture.shape[:2], camera.far, np.float32)
+    settings = cv2.TriangleRasterizeSettings()
+    settings.setShadingType(cv2.RASTERIZE_SHADING_SHADED)
+    settings.setCullingMode(cv2.RASTERIZE_CULLING_NONE)
+    cv2.triangleRasterize(
+        vertices, triangles, colours, picture, depth, camera.world_to_camera,
+        FIELD_OF_VIEW, camera.near, camera.far, settings,
+    )  # fmt: skip
+    side = len(picture) // SUPERSAMPLING
+    small = cv2.resize(picture, (side, side), interpolation=cv2.INTER_AREA)
+    return cv2.convertScaleAbs(small, alpha=255.0)

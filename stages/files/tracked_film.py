@@ -1,0 +1,90 @@
+"""A film together with what was tracked in it, picture by picture."""
+
+import dataclasses
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from stages.files import film, point_set, regions, series
+
+# rows of the contour's points, whether it is closed, number of its region (-1: none)
+Outline = tuple[np.ndarray, bool, int]
+
+
+@dataclasses.dataclass(frozen=True)
+class TrackedFilm:
+    """What was tracked in a film.
+
+    Attributes
+    ----------
+    video : path of the film
+    frame, time_s : (T,) arrays, number in the film and time [s] of each tracked frame
+    points : (T, P, 2) float array [px], NaN where not observed
+    point_confidence : (T, P) float array in 0..1
+    confidence : (T,) float array in 0..1
+    outlines : the contours
+    """
+
+    video: str
+    frame: np.ndarray
+    time_s: np.ndarray
+    points: np.ndarray
+    point_confidence: np.ndarray
+    confidence: np.ndarray
+    outlines: list[Outline]
+
+    @property
+    def arrays(self) -> tuple[np.ndarray, ...]:
+        """All that has a value for each frame."""
+        return self.frame, self.time_s, self.points, self.point_confidence, self.confidence
+
+
+def read(
+    video: str, tracked: str | Path, point_set_path: str | Path, regions_path: str | Path
+) -> TrackedFilm:
+    """Read what was tracked in a film, and how to draw it.
+
+    Raises
+    ------
+    errors.InputError
+        if one of the tables does not fit
+    """
+    observed = series.read(tracked, "tracked")
+    names = series.point_names(observed)
+    points = series.stack(observed, tracked, names)
+    point_confidence = series.stack(observed, tracked, names, axes=["confidence"])[:, :, 0]
+    confidence = observed.columns["confidence"]
+    return TrackedFilm(
+        video,
+        observed.frame,
+        observed.time_s,
+        points,
+        point_confidence,
+        confidence,
+        _outlines(names, point_set.read(point_set_path), regions.read(regions_path)),
+    )
+
+
+def _outlines(
+    names: list[str], contours: list[point_set.Contour], table: regions.Regions
+) -> list[Outline]:
+    """Return the contours of a point set that were tracked."""
+    owners = np.array([point_set.contour_of(name) for name in names])
+    outlines = []
+    for contour in contours:
+        rows = np.flatnonzero(owners == contour.name)
+        if not len(rows):
+            continue
+        own = {contour.name, *(names[row] for row in rows)}
+        held = [number for number, members in enumerate(table.values()) if own & set(members)]
+        outlines.append((rows, contour.kind == "closed", held[0] if held else -1))
+    return outlines
+
+
+def pictures(tracked: TrackedFilm) -> Iterator[tuple[int, np.ndarray]]:
+    """Yield row and picture of every tracked frame, in the film's order."""
+    rows = {int(frame): row for row, frame in enumerate(tracked.frame)}
+    for number, (_, picture) in enumerate(film.read_frames(tracked.video)):
+        if number in rows:
+            yield rows[number], picture

@@ -1,0 +1,82 @@
+"""Render what a take looks like: the film with its tracked contours beside the moving character."""
+
+import argparse
+from collections.abc import Callable, Sequence
+
+import cv2
+import numpy as np
+
+from stages import cli
+from stages.core import head_transform, polygons, preview, rasterize, shade
+from stages.files import errors, exr, film, film_writer, rig, tracked_film
+
+
+def build_parser() -> argparse.ArgumentParser:
+    """Return the stage's command line."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--video", required=True, help="the shot's film")
+    parser.add_argument("--tracked", required=True, help="tracked.parquet of the shot")
+    parser.add_argument("--point-set", required=True, help="table of contours")
+    parser.add_argument("--regions", required=True, help="table of regions; each has a colour")
+    parser.add_argument("--exr", required=True, help="mesh.exr of the take")
+    parser.add_argument("--json", required=True, help="mesh.json of the take")
+    parser.add_argument("--rig", required=True, help="rig.npz of the character, a mesh")
+    parser.add_argument(
+        "--title", required=True, help="first words of the caption: shot, character"
+    )
+    parser.add_argument("--preview", required=True, help="preview.mp4 to write")
+    return parser
+
+
+def _painter(character: rig.Rig, description: dict) -> Callable[[np.ndarray], np.ndarray]:
+    """Return a function that draws the (V, 3) positions of a character from a fixed camera."""
+    axes = head_transform.face_axes(character.up_axis)
+    low, high = (np.array(description["bounds"][end]) for end in ("min", "max"))
+    camera = rasterize.facing_camera(low, high, axes)
+    behind = rasterize.backdrop(preview.HEIGHT)
+    triangles = polygons.triangulate(character.sizes, character.corners)
+    normals = polygons.face_normals(character.neutral, triangles)
+    sign = shade.outward(character.neutral, triangles, normals, axes[:, 2])
+    clay = np.tile(shade.CLAY, (len(character.neutral), 1))
+    albedo = character.colours if len(character.colours) else clay
+
+    def paint(positions: np.ndarray) -> np.ndarray:
+        turned = sign * polygons.vertex_normals(positions, triangles) @ axes
+        light = shade.vertex_light(turned, albedo)
+        return rasterize.draw(positions, triangles, light, camera, behind)
+
+    return paint
+
+
+def main(argv: Sequence[str]) -> None:
+    """Render picture by picture."""
+    cv2.setNumThreads(1)
+    options = build_parser().parse_args(argv)
+    tracked = tracked_film.read(options.video, options.tracked, options.point_set, options.regions)
+    character = rig.read(options.rig, "mesh")
+    description = exr.read_json(options.json)
+    if description["vertex_hash"] != rig.vertex_hash(character):
+        raise errors.InputError(options.json, f"is not baked from {options.rig}: bake again")
+    baked = exr.Reader(options.exr, description)
+    paint = _painter(character, description)
+    progress = cli.Progress("preview", len(tracked.frame))
+
+    def character_at(time_s: float) -> np.ndarray:
+        progress.step()
+        return paint(baked.frame(baked.nearest(time_s)))
+
+    film_writer.write(
+        options.preview,
+        preview.frames(
+            tracked_film.pictures(tracked), tracked.arrays, tracked.outlines,
+            options.title, character_at,
+        ),
+        preview.size(*film.size(options.video)),
+        film.nominal_rate(options.video),
+        options.video,
+        tracked.time_s[0],
+    )  # fmt: skip
+
+
+if __name__ == "__main__":
+    cli.run_stage(main)
