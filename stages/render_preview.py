@@ -21,9 +21,8 @@ def build_parser() -> argparse.ArgumentParser:
     parser.add_argument("--exr", required=True, help="mesh.exr of the take")
     parser.add_argument("--json", required=True, help="mesh.json of the take")
     parser.add_argument("--rig", required=True, help="rig.npz of the character, a mesh")
-    parser.add_argument(
-        "--title", required=True, help="first words of the caption: shot, character"
-    )
+    parser.add_argument("--shot", required=True, help="name of the shot, for the caption")
+    parser.add_argument("--character", required=True, help="its name, for the caption")
     parser.add_argument("--preview", required=True, help="preview.mp4 to write")
     return parser
 
@@ -69,7 +68,7 @@ def main(argv: Sequence[str]) -> None:
         options.preview,
         preview.frames(
             tracked_film.pictures(tracked), tracked.arrays, tracked.outlines,
-            options.title, character_at,
+            f"{options.shot}, {options.character}", character_at,
         ),
         preview.size(*film.size(options.video)),
         film.nominal_rate(options.video),

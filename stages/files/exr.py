@@ -26,6 +26,7 @@ from stages.files import errors
 LAYOUT_VERSION = 1
 MAX_WIDTH = 8192
 CHANNELS = ("R", "G", "B")
+CHUNK_FRAMES = 32
 FLOAT32_ROUNDING = 2.0**-24
 
 
@@ -130,6 +131,7 @@ class Reader:
             self._file = OpenEXR.InputFile(str(path))
         except OSError as error:
             raise errors.InputError(path, f"no EXR file ({error}): bake again") from error
+        self._start, self._chunk = -1, np.zeros((0, 0, 3), np.float32)
         window = self._file.header()["dataWindow"]
         rows, width = window.max.y + 1, window.max.x + 1
         if (rows, width) != (self.frames * self.blocks, description["width"]):
@@ -142,7 +144,16 @@ class Reader:
 
     def frame(self, index: int) -> np.ndarray:
         """Return the (V, 3) float32 positions of a frame, counted from 0."""
-        rows = (index * self.blocks, (index + 1) * self.blocks - 1)
+        start = index - index % CHUNK_FRAMES
+        if start != self._start:
+            self._start, self._chunk = start, self._read(start)
+        return self._chunk[index - start]
+
+    def _read(self, start: int) -> np.ndarray:
+        """Return some frames: rows are compressed together, so one at a time would be slow."""
+        end = min(start + CHUNK_FRAMES, self.frames)
         kind = Imath.PixelType(Imath.PixelType.FLOAT)
+        rows = start * self.blocks, end * self.blocks - 1
         planes = [np.frombuffer(self._file.channel(n, kind, *rows), "<f4") for n in CHANNELS]
-        return np.stack(planes, axis=1)[: self.vertices]
+        chunk = np.stack(planes, axis=1).reshape(end - start, -1, 3)
+        return np.ascontiguousarray(chunk[:, : self.vertices])
