@@ -32,12 +32,3 @@ def picture(image: np.ndarray) -> str:
         ".jpg", cv2.cvtColor(image, cv2.COLOR_RGB2BGR), [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY]
     )
     return "data:image/jpeg;base64," + base64.b64encode(jpeg.tobytes()).decode()
-
-
-def svg_path(points: np.ndarray, closed: bool) -> str:
-    """Return the `d` of an SVG path through (N, 2) points; a single point becomes a small cross."""
-    if len(points) == 1:
-        x, y = points[0]
-        return f"M{x - 0.03:.4f} {y:.4f}h.06M{x:.4f} {y - 0.03:.4f}v.06"
-    steps = " ".join(f"{x:.4f} {y:.4f}" for x, y in points)
-    return f"M{steps}{'Z' if closed else ''}"

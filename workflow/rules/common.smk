@@ -34,6 +34,11 @@ def present(paths):
     return [path for path in paths if Path(path).exists()]
 
 
+def template(name):
+    """Return the path of a page's template, an input like any other."""
+    return str(Path(workflow.basedir, "stages", "templates", name))
+
+
 def table(name):
     """Read and validate one table of the show."""
     return show.read(f"config/{name}.tsv", SCHEMAS / f"{name}.yaml")
@@ -127,12 +132,6 @@ def cast_takes():
             if not wanted or shot["shot"] in wanted:
                 takes.append((shot["shot"], row.cells["character"]))
     return takes
-
-
-def characters_of(actor):
-    """Return the rows of the characters that an actor plays."""
-    names = [row["character"] for row in rows_of(SHOW["cast"], "actor", actor)]
-    return [row_of(SHOW["characters"], "character", name) for name in names]
 
 
 def sculpts_of(character):

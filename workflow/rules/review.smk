@@ -63,9 +63,8 @@ def report_command():
         session = session_of(row.cells["shot"])
         shots.append(f"{session['actor']}/{session['session']}/{row.cells['shot']}")
     played = [f"{shot}/{character}" for shot, character in cast_takes()]
-    template = Path(workflow.basedir, "stages", "templates", "report.html")
     return shlex.join(
         ["python", "-m", "stages.write_report", "--results", "results", "--logs", "logs"]
-        + ["--shots", *shots, "--takes", *played, "--template", str(template)]
+        + ["--shots", *shots, "--takes", *played, "--template", template("report.html")]
         + ["--report", "results/report/index.html"]
     )

@@ -42,11 +42,17 @@ def lock_rows(wildcards):
     return ["{region}:{shot}:{frame}:{state}".format(**row) for row in rows]
 
 
+def played_characters(wildcards):
+    """Return the names of the characters that an actor plays."""
+    return [row["character"] for row in rows_of(SHOW["cast"], "actor", wildcards.actor)]
+
+
 def sculpt_states(wildcards):
     """Return the states of the sculpts of all characters that an actor plays."""
-    names = [row["character"] for row in characters_of(wildcards.actor)]
     return expand(
-        "results/cast/{actor}/{character}/sculpts.parquet", actor=wildcards.actor, character=names
+        "results/cast/{actor}/{character}/sculpts.parquet",
+        actor=wildcards.actor,
+        character=played_characters(wildcards),
     )
 
 
@@ -113,4 +119,54 @@ rule select_key_shapes:
         " --seed {params.seed}"
         " --key-shapes {output.key_shapes:q}"
         " --errors {output.errors:q}"
+        " 2> {log:q}"
+
+
+rule write_brief:
+    input:
+        basis_films,
+        key_shapes="results/actors/{actor}/key_shapes.parquet",
+        errors="results/actors/{actor}/key_shape_errors.parquet",
+        tracked=basis_tracked,
+        expressions=basis_expressions,
+        states=sculpt_states,
+        point_set="config/point_set.tsv",
+        regions="config/regions.tsv",
+        template=template("brief.html"),
+    output:
+        page=report(
+            "results/actors/{actor}/brief/index.html",
+            caption="../report/brief.rst",
+            category="Briefs",
+            labels={"actor": "{actor}"},
+        ),
+        locks="results/actors/{actor}/brief/key_shapes.tsv",
+    log:
+        "logs/write_brief/{actor}.log",
+    benchmark:
+        "logs/write_brief/{actor}.tsv"
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("write_brief"),
+        shots=basis_shots,
+        videos=basis_film_paths,
+        characters=played_characters,
+    shell:
+        "python -m stages.write_brief"
+        " --actor {wildcards.actor:q}"
+        " --key-shapes {input.key_shapes:q}"
+        " --errors {input.errors:q}"
+        " --shots {params.shots:q}"
+        " --videos {params.videos:q}"
+        " --tracked {input.tracked:q}"
+        " --expressions {input.expressions:q}"
+        " --point-set {input.point_set:q}"
+        " --regions {input.regions:q}"
+        " --characters {params.characters:q}"
+        " --sculpt-states {input.states:q}"
+        " --template {input.template:q}"
+        " --page {output.page:q}"
+        " --locks {output.locks:q}"
         " 2> {log:q}"
