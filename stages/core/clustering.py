@@ -5,7 +5,7 @@ import numpy as np
 from stages.core import key_shape_candidates, pca
 from stages.core.key_shape_candidates import Choice
 
-_STARTS = 8
+_STARTS = 4
 _ROUNDS = 200
 
 
@@ -79,23 +79,30 @@ def _lloyd(points, fixed, count, rng):
     means = _seeds(points, fixed, count, rng)
     nearest = None
     for _ in range(_ROUNDS):
-        distance = np.sum((points[:, None] - means) ** 2, axis=2)
+        distance = _squares(points, means)
         before, nearest = nearest, distance.argmin(axis=1)
         if before is not None and (before == nearest).all():
             break
-        for number in range(len(fixed), count):
-            member = nearest == number
-            if member.any():
-                means[number] = points[member].mean(axis=0)
+        size = np.bincount(nearest, minlength=count)
+        moving = np.flatnonzero(size[len(fixed) :]) + len(fixed)
+        for axis in range(points.shape[1]):
+            total = np.bincount(nearest, points[:, axis], minlength=count)
+            means[moving, axis] = total[moving] / size[moving]
     return distance.min(axis=1).sum(), means, nearest
+
+
+def _squares(points, means):
+    """Return the squared distance (T, count) of every point from every centre."""
+    return sum((points[:, [axis]] - means[:, axis]) ** 2 for axis in range(points.shape[1]))
 
 
 def _seeds(points, fixed, count, rng):
     """Draw centres one by one, each with probability proportional to its squared distance."""
     means = list(fixed) or [points[rng.integers(len(points))]]
+    distance = _squares(points, np.array(means)).min(axis=1)
     while len(means) < count:
-        distance = np.min([np.sum((points - mean) ** 2, axis=1) for mean in means], axis=0)
         total = distance.sum()
         share = distance / total if total > 0 else np.full(len(points), 1 / len(points))
         means.append(points[rng.choice(len(points), p=share)])
+        distance = np.minimum(distance, _squares(points, means[-1][None])[:, 0])
     return np.array(means)
