@@ -89,7 +89,8 @@ def main(argv: Sequence[str]) -> None:
         ]
     sources = [*arguments.expressions, arguments.pca]
     names = {region: [frames.names[i] for i in rows] for region, rows in chosen_points.items()}
-    key_shapes.write(arguments.key_shapes, shapes, names, sources)
+    neutral = {region: frames.neutral[rows].ravel() for region, rows in chosen_points.items()}
+    key_shapes.write(arguments.key_shapes, shapes, names, neutral, sources)
     key_shapes.write_errors(arguments.errors, curves, sources)
 
 

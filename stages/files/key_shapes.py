@@ -83,12 +83,14 @@ def write(
     path: str | Path,
     rows: Iterable[dict],
     points: dict[str, Sequence[str]],
+    neutral: dict[str, Sequence[float]],
     sources: Iterable[str | Path] = (),
 ) -> None:
-    """Write rows with the fields of `KeyShape`, and the names of the points of every region."""
+    """Write rows with the fields of `KeyShape`; names and neutral of every region's points."""
     meta = provenance.stamp(KIND, sources) | {
         "units": "face units",
         "points": {region: list(names) for region, names in points.items()},
+        "neutral": {region: list(values) for region, values in neutral.items()},
     }
     _write(path, list(rows), SCHEMA, meta)
 
