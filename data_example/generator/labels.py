@@ -1,0 +1,58 @@
+"""Label a dozen frames as a person would: points along the contours, a little off."""
+
+import numpy as np
+from scipy.spatial import transform
+
+from data_example.generator import contours, landmarks, params
+
+FRAMES = {"rom": (3, 43, 76, 94, 124, 168, 274, 358), "talk": (27, 218), "turn": (78, 130)}
+NOISE_PX = 0.3
+
+
+def _fractions(kind, count, rng):
+    """Return unevenly spaced fractions along a contour, its ends kept."""
+    even = contours.fractions(kind, count)
+    step = 1 / max(len(even), 1)
+    loose = even + rng.uniform(-0.2, 0.2, len(even)) * step
+    loose[0] = 0.0
+    if kind == "open":
+        loose[-1] = 1.0
+    return loose
+
+
+def frame_labels(dense, rng):
+    """Return the labels of one frame.
+
+    Parameters
+    ----------
+    dense : dict name -> (N, 2) float array, true contours [px]
+    rng : numpy generator
+
+    Returns
+    -------
+    rows : list of (point name, x, y, corner), corner 1 or blank
+    """
+    rows = []
+    for contour, (kind, _, count) in contours.POINT_SET.items():
+        at, back = _fractions(kind, count, rng), _fractions(kind, count, rng)
+        points = contours.sample(kind, dense[contour], at, back)
+        points = points + NOISE_PX * rng.standard_normal(points.shape)
+        for number, (x, y) in enumerate(points):
+            name = contour if kind == "point" else f"{contour}_{number:02d}"
+            corner = "1" if kind == "closed" and number % (count // 2) == 0 else ""
+            rows.append((name, x, y, corner))
+    return rows
+
+
+def of_take(take, frames, neutral_brows, seed=31):
+    """Return the labels of a take's frames as the text of a labels file."""
+    rng = np.random.default_rng(seed)
+    lines = ["frame,point,x_px,y_px,corner"]
+    for frame in frames:
+        p = params.from_row(take.expression[frame])
+        turn = transform.Rotation.from_quat(take.quaternion[frame]).as_matrix()
+        dense = landmarks.in_space(p, neutral_brows)
+        picture = landmarks.in_picture(landmarks.moved(dense, turn, take.translation[frame]))
+        for name, x, y, corner in frame_labels(picture, rng):
+            lines.append(f"{frame},{name},{x:.2f},{y:.2f},{corner}")
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,66 @@
+"""Give the true contours of the actor's face, in space and in the picture."""
+
+import numpy as np
+
+from data_example.generator import actor, contours, eyes, fields, mouth, render, texture
+
+SIDES = (("r", "right"), ("l", "left"))
+HIDDEN_MM = 3.0
+
+
+def brows():
+    """Return the neutral middle lines of both brows, side -> (N, 3) [mm]."""
+    return {name: texture.brow_curve(side) for side, name in SIDES}
+
+
+def in_space(p, neutral_brows):
+    """Return the dense true contours without head motion, name -> (N, 3) [mm]."""
+    inner = mouth.inner_curves(p)
+    result = {"lips_outer": mouth.outer_curve(inner, p), "lips_inner": inner}
+    for side, name in SIDES:
+        line = neutral_brows[name]
+        result[f"brow_{name}"] = line + fields.skin(line, p)
+        result[f"eye_{name}"] = eyes.lid_rings(side, p)[eyes.MARGIN]
+        result[f"pupil_{name}"] = eyes.pupil(side, p)[None]
+    return result
+
+
+def moved(space, rotation, translation):
+    """Return contours after head motion, name -> (N, 3) [mm]."""
+    return {
+        name: (line - actor.NECK) @ rotation.T + actor.NECK + translation
+        for name, line in space.items()
+    }
+
+
+def in_picture(world):
+    """Return contours in the picture, name -> (N, 2) [px]."""
+    return {name: render.project(line) for name, line in world.items()}
+
+
+def visible(world, depth):
+    """Return which points of the point set nothing hides from the camera, (P,) bool.
+
+    Parameters
+    ----------
+    world : dict name -> (N, 3) float array, contours after head motion [mm]
+    depth : (H, W) float32 array, distance of what is seen at all samples [mm]
+    """
+    points = contours.point_set(world)
+    places = np.floor(render.project(points) * render.SAMPLES).astype(int)
+    height, width = depth.shape
+    inside = ((places >= 0) & (places < [width, height])).all(axis=1)
+    x, y = np.clip(places, 0, [width - 1, height - 1]).T
+    nearest = np.full(len(points), -np.inf)
+    for dy in (-1, 0, 1):
+        for dx in (-1, 0, 1):
+            around = depth[np.clip(y + dy, 0, height - 1), np.clip(x + dx, 0, width - 1)]
+            nearest = np.maximum(nearest, around)
+    return inside & (-render.to_camera(points)[:, 2] < nearest + HIDDEN_MM)
+
+
+def opening(p):
+    """Return the gap between the lips in the middle of the mouth [mm]."""
+    inner = mouth.inner_curves(p)
+    low, high = inner[mouth.HALF // 2], inner[mouth.HALF + mouth.HALF // 2]
+    return float(np.linalg.norm(high - low))
