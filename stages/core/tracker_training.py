@@ -1,0 +1,208 @@
+"""Learning a tracker from a handful of labelled frames (CB02 section 3, and its refinement)."""
+
+import dataclasses
+from collections.abc import Sequence
+
+import numpy as np
+
+from stages.core import (
+    confidence,
+    descent,
+    eigen_points,
+    face_frame,
+    face_search,
+    false_faces,
+    morph,
+    similarity,
+    warp,
+)
+from stages.core.face_tracker import FaceTracker
+
+METHODS = ("eigen_points", "eigen_points_descent")
+LEAST_LABELLED = 3
+RADIUS_PX = 38.0
+MARGIN_PX = 14.0
+TRAINING_MARGIN_PX = 26
+COMPONENTS = 15
+FRACTIONS = (0.25, 0.5, 0.75)
+MORPH_LIMIT = 240
+LABEL_WEIGHT = 3
+STARTS = 4
+RIDGE = 0.5
+START_SHIFT_PX, START_ANGLE, START_SCALE = 2.0, 0.03, 0.03
+LIGHT = (0.15, 0.08, 1.5)
+JUDGED_MORPHS = 60
+
+
+@dataclasses.dataclass(frozen=True)
+class Faces:
+    """Labelled faces and their morphs, pre-warped with room round them.
+
+    Attributes
+    ----------
+    images : (M, H, W, 3) uint8 array
+    shapes : (M, P, 2) float array [px of those]
+    parents : (M, 2) int array, the labelled frames that each comes from
+    labelled : how many are labelled frames themselves; they come first
+    """
+
+    images: np.ndarray
+    shapes: np.ndarray
+    parents: np.ndarray
+    labelled: int
+
+
+def train(
+    pictures: Sequence[np.ndarray],
+    shapes: np.ndarray,
+    groups: Sequence[np.ndarray],
+    method: str,
+    seed: int,
+) -> FaceTracker:
+    """Learn a tracker.
+
+    Parameters
+    ----------
+    pictures : N pictures, (H, W, 3) uint8 arrays, RGB
+    shapes : (N, P, 2) float array [px], their labelled points
+    groups : int arrays that hold each point once
+    method : `eigen_points` as published, or `eigen_points_descent`
+    seed : of the perturbations
+
+    Raises
+    ------
+    ValueError
+        if there are too few labelled frames, points outside every group, or no such method
+    """
+    if method not in METHODS:
+        raise ValueError(f"method {method} is none of {', '.join(METHODS)}")
+    if len(pictures) < LEAST_LABELLED:
+        raise ValueError(f"{len(pictures)} labelled frames are too few: at least {LEAST_LABELLED}")
+    if sorted(np.concatenate(groups)) != list(range(shapes.shape[1])):
+        raise ValueError(f"groups do not hold each of {shapes.shape[1]} points once")
+    rng = np.random.default_rng(seed)
+    frame = face_frame.around(similarity.mean_shape(shapes, RADIUS_PX), MARGIN_PX)
+    faces = _faces(pictures, shapes, frame, rng)
+    eigen = eigen_points.train(faces.images, faces.shapes, frame, COMPONENTS)
+    cascade = descent.Descent((), ())
+    if method == "eigen_points_descent":
+        cascade = _cascade(faces, frame, groups, rng)
+    judge = _judge(faces, frame, groups, rng)
+    scales = np.array([np.sqrt(np.linalg.det(frame.pose(s)[:, :2])) for s in shapes])
+    fronts = np.array(
+        [warp.prewarp(p, frame.pose(s), frame.size) for p, s in zip(pictures, shapes, strict=True)]
+    )
+    finder = face_search.train(fronts, scales, frame)
+    return FaceTracker(frame, tuple(groups), eigen, cascade, judge, finder)
+
+
+def _faces(
+    pictures: Sequence[np.ndarray],
+    shapes: np.ndarray,
+    frame: face_frame.FaceFrame,
+    rng: np.random.Generator,
+) -> Faces:
+    """Pre-warp the labelled frames and morph between them."""
+    wide = face_frame.widened(frame, TRAINING_MARGIN_PX)
+    poses = [wide.pose(shape) for shape in shapes]
+    images = np.array(
+        [
+            warp.prewarp(picture, pose, wide.size)
+            for picture, pose in zip(pictures, poses, strict=True)
+        ]
+    )
+    local = np.array(
+        [
+            similarity.apply(similarity.invert(pose), shape)
+            for pose, shape in zip(poses, shapes, strict=True)
+        ]
+    )
+    morphs, bent, parents = morph.enlarge(images, local, FRACTIONS, MORPH_LIMIT, rng)
+    own = np.arange(len(shapes))
+    return Faces(
+        np.concatenate([images, morphs]),
+        np.concatenate([local, bent]),
+        np.concatenate([np.stack([own, own], axis=1), parents]),
+        len(shapes),
+    )
+
+
+def _cascade(
+    faces: Faces,
+    frame: face_frame.FaceFrame,
+    groups: Sequence[np.ndarray],
+    rng: np.random.Generator,
+) -> descent.Descent:
+    """Train the refinement from perturbed starts under changed light."""
+    repeats = np.full(len(faces.images), STARTS)
+    repeats[: faces.labelled] *= LABEL_WEIGHT
+    sources = np.repeat(np.arange(len(repeats)), repeats)
+    images = np.array([false_faces.relit(faces.images[m], *LIGHT, rng) for m in sources])
+    starts = _starts(faces.shapes, sources, frame, rng)
+    cascade, _ = descent.train(images, sources, faces.shapes[sources], starts, frame, groups, RIDGE)
+    return cascade
+
+
+def _starts(
+    shapes: np.ndarray,
+    sources: np.ndarray,
+    frame: face_frame.FaceFrame,
+    rng: np.random.Generator,
+) -> np.ndarray:
+    """Return a perturbed start for every source: part of another's shape, moved a little."""
+    upright = np.array(
+        [similarity.apply(similarity.fit_similarity(s, frame.points), s) for s in shapes]
+    )
+    starts = []
+    for source in sources:
+        share = rng.random()
+        other = upright[rng.integers(len(upright))]
+        shape = (1 - share) * upright[source] + share * other
+        placed = similarity.apply(frame.pose(shapes[source]), shape)
+        moved = similarity.about(
+            placed.mean(axis=0),
+            START_ANGLE * rng.normal(),
+            np.exp(START_SCALE * rng.normal()),
+            START_SHIFT_PX * rng.normal(size=2),
+        )
+        starts.append(similarity.apply(moved, placed))
+    return np.array(starts)
+
+
+def _judge(
+    faces: Faces,
+    frame: face_frame.FaceFrame,
+    groups: Sequence[np.ndarray],
+    rng: np.random.Generator,
+) -> confidence.Judge:
+    """Train the judge on left-out labelled faces and on false ones."""
+    count = faces.labelled
+    morphs = np.linspace(count, len(faces.images) - 1, JUDGED_MORPHS).astype(int)
+    chosen = np.concatenate([np.arange(count), np.unique(morphs)])
+    described = np.array([_described(faces.images[m], faces.shapes[m], frame) for m in chosen])
+    mean, basis = confidence.span(described)
+    right = []
+    for i in range(count):
+        apart = (faces.parents[chosen] != i).all(axis=1)
+        left_mean, left_basis = confidence.span(described[apart])
+        for _ in range(4):
+            image = false_faces.relit(faces.images[i], *LIGHT, rng)
+            shape = faces.shapes[i] + 0.6 * rng.normal(size=faces.shapes[i].shape)
+            seen = _described(image, shape, frame)
+            right.append(confidence.log_distance(left_mean, left_basis, seen))
+    wrong, is_wrong = [], []
+    for i in range(count):
+        for make in false_faces.KINDS:
+            for _ in range(4):
+                image, shape, bad = make(faces.images[i], faces.shapes[i], groups, rng)
+                seen = _described(image, shape, frame)
+                wrong.append(confidence.log_distance(mean, basis, seen))
+                is_wrong.append(bad)
+    return confidence.train(
+        mean, basis, np.array(right), np.array(wrong), np.array(is_wrong), groups
+    )
+
+
+def _described(image: np.ndarray, shape: np.ndarray, frame: face_frame.FaceFrame) -> np.ndarray:
+    """Return the descriptors (P, F) of a face at given points."""
+    return descent.describe(descent.look(image, frame, shape), shape)
