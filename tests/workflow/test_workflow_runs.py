@@ -1,3 +1,4 @@
+import contextlib
 import hashlib
 import shutil
 
@@ -63,29 +64,29 @@ def test_a_removed_sculpt_fails_the_takes_alone_and_is_named(show):
     assert "8 of 8" in (show.folder / "results/actors/eve/brief/index.html").read_text()
 
 
-def test_touched_footage_and_comments_make_nothing_again(show, tmp_path):
+@contextlib.contextmanager
+def added_line(show, line):
+    """Add a line to a core file of the checkout for a while."""
+    path = show.checkout / "stages/core/planar_motion.py"
+    original = path.read_text()
+    path.write_text(original + line)
+    try:
+        yield
+    finally:
+        path.write_text(original)
+
+
+def test_touched_footage_and_a_comment_make_nothing_again(show):
     (show.folder / "footage/b.mp4").touch()
-    show.checkout = _edited_checkout(show, tmp_path, "# why\n")
-    assert show.would_run() == {}
+    with added_line(show, "# why\n"):
+        assert show.would_run() == {}
 
 
-def test_edited_code_makes_again_what_it_reaches(show, tmp_path):
-    show.checkout = _edited_checkout(show, tmp_path, "EDITED = 1\n")
+def test_edited_code_makes_again_what_it_reaches(show):
     made = {"align_head": 2, "fit_pca": 1, "select_key_shapes": 1, "solve_weights": 2}
     made |= {"check_sculpts": 1, "assemble_rig": 1, "write_brief": 1} | TAKE
-    assert show.would_run() == made
-
-
-def _edited_checkout(show, tmp_path, text):
-    """Put the finished run's checkout aside and return it with a line more in a core file."""
-    # the templates are inputs: so the checkout stays where it is
-    path = show.checkout / "stages/core/planar_motion.py"
-    copy = conftest.Show(show.folder, show.checkout)
-    original = path.read_text()
-    copy_checkout = tmp_path / "checkout"
-    shutil.copytree(show.checkout, copy_checkout)
-    (copy_checkout / "stages/core/planar_motion.py").write_text(original + text)
-    return copy_checkout
+    with added_line(show, "EDITED = 1\n"):
+        assert show.would_run() == made
 
 
 def test_a_changed_cell_makes_only_what_it_says(show):
