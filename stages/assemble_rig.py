@@ -8,7 +8,7 @@ import numpy as np
 
 from stages import cli
 from stages.core import masks
-from stages.files import errors, mask_table, rig, sculpts
+from stages.files import errors, key_shapes, mask_table, rig, sculpts
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -68,13 +68,15 @@ def _wanted(
     """Return region, key shape and path of every sculpt that the rig needs."""
     held = dict(zip(regions, values.any(axis=1), strict=True))
     wanted = []
-    for region, shape in sculpts.expected(options.key_shapes):
-        if region not in held:
-            message = f"region {region} of the key shapes is not in it: add its rows"
+    for shape in key_shapes.read(options.key_shapes):
+        if shape.region not in held:
+            message = f"region {shape.region} of the key shapes is not in it: add its rows"
             raise errors.InputError(options.masks, message)
-        if held[region]:
-            path = sculpts.path_of(options.sculpt_folder, region, shape, options.neutral)
-            wanted.append((region, shape, path))
+        if held[shape.region]:
+            path = sculpts.path_of(
+                options.sculpt_folder, shape.region, shape.key_shape, options.neutral
+            )
+            wanted.append((shape.region, shape.key_shape, path))
     return wanted
 
 

@@ -8,6 +8,9 @@ from pathlib import Path
 
 from stages.files import delimited, errors
 
+# columns of the curves that controls are baked to
+TAKEN = ("frame", "time_s")
+
 
 def read(path: str | Path) -> dict[str, float]:
     """Read a pose.
@@ -24,6 +27,9 @@ def read(path: str | Path) -> dict[str, float]:
     pose = {}
     for row in delimited.read(path, ("name", "value"), separator=","):
         name = row.cells["name"]
+        if name in TAKEN or "," in name:
+            message = f"line {row.line}: a control cannot be called '{name}': rename it"
+            raise errors.InputError(path, message)
         if not name or name in pose:
             what = f"control '{name}' stands twice" if name else "a control has no name"
             raise errors.InputError(path, f"line {row.line}: {what}: one row a control")

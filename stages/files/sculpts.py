@@ -14,11 +14,14 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from stages.files import atomic, controls, errors, mesh, provenance, series
+from stages.files import atomic, controls, errors, key_shapes, mesh, provenance, series
 
 KIND = "sculpts"
 COLUMNS = ("region", "key_shape", "path", "state", "detail", "cure")
 CONTROL_SUFFIX = ".csv"
+
+# region and key shape
+Key = tuple[str, str]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -46,19 +49,24 @@ def path_of(folder: str | Path, region: str, key_shape: str, neutral: str | Path
     return Path(folder) / region / (key_shape + Path(neutral).suffix)
 
 
-def expected(path: str | Path) -> list[tuple[str, str]]:
-    """Return region and name of every key shape of a `key_shapes.parquet`, in its order.
+def actor_offsets(path: str | Path) -> dict[str, dict[str, np.ndarray]]:
+    """Return how the actor's key shapes differ from the actor's neutral.
 
-    Raises
-    ------
-    errors.InputError
-        if the file has no such columns
+    Parameters
+    ----------
+    path : `key_shapes.parquet`
+
+    Returns
+    -------
+    region -> key shape -> (2Q,) float array [face units]
     """
-    try:
-        table = pq.read_table(path, columns=["region", "key_shape"])
-    except pa.ArrowInvalid as error:
-        raise errors.InputError(path, f"no table of key shapes: {error}") from error
-    return [(row["region"], row["key_shape"]) for row in table.to_pylist()]
+    shapes = key_shapes.read(path)
+    neutral = json.loads(pq.read_schema(path).metadata[key_shapes.META_KEY])["neutral"]
+    offsets: dict[str, dict[str, np.ndarray]] = {}
+    for shape in shapes:
+        offset = np.array(shape.shape) - np.array(neutral[shape.region])
+        offsets.setdefault(shape.region, {})[shape.key_shape] = offset
+    return offsets
 
 
 def read_neutral(path: str | Path) -> Pose:
@@ -98,6 +106,43 @@ def read_sculpt(path: str | Path, neutral: Pose) -> tuple[np.ndarray, bool]:
         read.corners, neutral.corners
     )
     return read.vertices, same
+
+
+class StateTable:
+    """The table of states while faults are found; several of one sculpt stand together.
+
+    Parameters
+    ----------
+    paths : where each sculpt is expected
+    """
+
+    def __init__(self, paths: dict[Key, Path]):
+        self.rows = {key: _row(*key, path) for key, path in paths.items()}
+
+    def set(self, key: Key, state: str, detail: str, cure: str) -> None:
+        """Give a sculpt a state, with what was found and what to do."""
+        row = self.rows[key]
+        row["state"] = state
+        row["detail"] = f"{row['detail']}; {detail}" if row["detail"] else detail
+        row["cure"] = f"{row['cure']}; {cure}" if row["cure"] else cure
+
+    def add_unused(self, listed: Iterable[str | Path]) -> None:
+        """Add the files among those listed that are no key shape's sculpt."""
+        expected = {row["path"] for row in self.rows.values()}
+        for path in sorted(set(map(Path, listed))):
+            if path.as_posix() not in expected:
+                key = path.parent.name, path.name
+                self.rows[key] = _row(path.parent.name, path.stem, path)
+                self.set(
+                    key, "unused", "no key shape expects this file",
+                    "remove it, or correct its folder, name or format to one of the brief",
+                )  # fmt: skip
+
+
+def _row(region: str, key_shape: str, path: Path) -> dict[str, str]:
+    """Return the row of a sculpt that nothing is wrong with."""
+    cells = (region, key_shape, path.as_posix(), "present", "", "")
+    return dict(zip(COLUMNS, cells, strict=True))
 
 
 def write_states(

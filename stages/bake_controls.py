@@ -1,0 +1,41 @@
+"""Bake a take of a character whose poses are tables of controls: one curve for each control.
+
+Head motion is no part of the curves: it stands in weights.parquet, in face units.
+"""
+
+import argparse
+from collections.abc import Sequence
+
+from stages import cli
+from stages.core import compose
+from stages.files import rig, series, weights
+
+
+def build_parser() -> argparse.ArgumentParser:
+    """Return the stage's command line."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--rig", required=True, help="rig.npz of the character, of controls")
+    parser.add_argument("--weights", required=True, help="weights.parquet of the take")
+    parser.add_argument("--controls", required=True, help="controls.parquet to write")
+    parser.add_argument("--csv", required=True, help="controls.csv to write: the same as text")
+    return parser
+
+
+def main(argv: Sequence[str]) -> None:
+    """Compose every frame's values of the controls."""
+    options = build_parser().parse_args(argv)
+    character = rig.read(options.rig, "controls")
+    played = weights.read(options.weights, character.names)
+    masked = compose.mask_deltas(character.deltas, character.masks, character.mask_index)
+    values = character.neutral[:, 0] + played.shapes @ masked[:, :, 0]
+    columns = dict(zip(character.controls, values.T, strict=True))
+    time_s = played.frame * played.rate.denominator / played.rate.numerator
+    sources = [options.rig, options.weights]
+    series.write(
+        options.controls, "controls", played.frame, time_s, columns, played.rate, {}, sources
+    )
+    weights.write_csv(options.csv, played.frame, time_s, columns)
+
+
+if __name__ == "__main__":
+    cli.run_stage(main)
