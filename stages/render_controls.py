@@ -1,0 +1,63 @@
+"""Render what a take of named controls looks like: the film beside the moving curves."""
+
+import argparse
+from collections.abc import Sequence
+
+import cv2
+import numpy as np
+
+from stages import cli
+from stages.core import curve_panel, preview
+from stages.files import film, film_writer, series, tracked_film
+
+
+def build_parser() -> argparse.ArgumentParser:
+    """Return the stage's command line."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--video", required=True, help="the shot's film")
+    parser.add_argument("--tracked", required=True, help="tracked.parquet of the shot")
+    parser.add_argument("--point-set", required=True, help="table of contours")
+    parser.add_argument("--regions", required=True, help="table of regions; each has a colour")
+    parser.add_argument("--controls", required=True, help="controls.parquet of the take")
+    parser.add_argument("--shot", required=True, help="name of the shot, for the caption")
+    parser.add_argument("--character", required=True, help="its name, for the caption")
+    parser.add_argument("--preview", required=True, help="preview.mp4 to write")
+    return parser
+
+
+def main(argv: Sequence[str]) -> None:
+    """Render picture by picture."""
+    cv2.setNumThreads(1)
+    options = build_parser().parse_args(argv)
+    tracked = tracked_film.read(options.video, options.tracked, options.point_set, options.regions)
+    curves = series.read(options.controls, "controls")
+    values = np.stack(list(curves.columns.values()), axis=1)
+    shown = curve_panel.liveliest(values)
+    names = [list(curves.columns)[column] for column in shown]
+    values = values[:, shown]
+    lanes = curve_panel.draw_lanes(names, values, preview.HEIGHT)
+    progress = cli.Progress("preview", len(tracked.frame))
+
+    def curves_at(time_s: float) -> np.ndarray:
+        progress.step()
+        row = int(np.abs(curves.time_s - time_s).argmin())
+        return curve_panel.draw_playhead(lanes, values, row)
+
+    film_writer.write(
+        options.preview,
+        preview.frames(
+            tracked_film.pictures(tracked),
+            tracked.arrays,
+            tracked.outlines,
+            f"{options.shot}, {options.character}",
+            curves_at,
+        ),
+        preview.size(*film.size(options.video)),
+        film.nominal_rate(options.video),
+        options.video,
+        tracked.time_s[0],
+    )
+
+
+if __name__ == "__main__":
+    cli.run_stage(main)
