@@ -134,6 +134,13 @@ def cast_takes():
     return takes
 
 
+def of_kind(kind):
+    """Return the pattern of the characters that are a mesh, or a table of controls."""
+    rows = [row.cells for row in SHOW["characters"]]
+    wanted = kind == "controls"
+    return "|".join(r["character"] for r in rows if r["neutral"].endswith(".csv") == wanted) or "-"
+
+
 def sculpts_of(character):
     """Return the sculpts that lie in a character's folder, sorted."""
     row = row_of(SHOW["characters"], "character", character)

@@ -1,17 +1,13 @@
 """What people look at.
 
-Needs a take's mesh and its shot's film and tracked points. Makes preview.mp4.
+Needs a take's mesh and its shot's film and tracked points. Makes preview.mp4, of a mesh or of the
+curves of named controls, and the run's report.
 """
 
 
 def takes():
-    """Return what shows that a take is done: a preview of a mesh, or the curves of controls."""
-    made = []
-    for shot, character in cast_takes():
-        neutral = row_of(SHOW["characters"], "character", character)["neutral"]
-        name = "controls.csv" if neutral.endswith(".csv") else "preview.mp4"
-        made.append(f"results/takes/{shot}/{character}/{name}")
-    return made
+    """Return what shows that a take is done."""
+    return [f"results/takes/{shot}/{character}/preview.mp4" for shot, character in cast_takes()]
 
 
 rule render_preview:
@@ -35,6 +31,8 @@ rule render_preview:
         "logs/render_preview/{shot}/{character}.log",
     benchmark:
         "logs/render_preview/{shot}/{character}.tsv"
+    wildcard_constraints:
+        character=of_kind("mesh"),
     conda:
         "../envs/stages.yaml"
     threads: 1
@@ -50,6 +48,46 @@ rule render_preview:
         " --exr {input.exr:q}"
         " --json {input.json:q}"
         " --rig {input.rig:q}"
+        " --shot {wildcards.shot:q}"
+        " --character {wildcards.character:q}"
+        " --preview {output.preview:q}"
+        " 2> {log:q}"
+
+
+rule render_controls:
+    input:
+        film,
+        tracked="results/shots/{shot}/tracked.parquet",
+        point_set="config/point_set.tsv",
+        regions="config/regions.tsv",
+        controls="results/takes/{shot}/{character}/controls.parquet",
+    output:
+        preview=report(
+            "results/takes/{shot}/{character}/preview.mp4",
+            caption="../report/preview.rst",
+            category="Takes",
+            subcategory="{shot}",
+            labels={"character": "{character}"},
+        ),
+    log:
+        "logs/render_controls/{shot}/{character}.log",
+    benchmark:
+        "logs/render_controls/{shot}/{character}.tsv"
+    wildcard_constraints:
+        character=of_kind("controls"),
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("render_controls"),
+        video=film_path,
+    shell:
+        "python -m stages.render_controls"
+        " --video {params.video:q}"
+        " --tracked {input.tracked:q}"
+        " --point-set {input.point_set:q}"
+        " --regions {input.regions:q}"
+        " --controls {input.controls:q}"
         " --shot {wildcards.shot:q}"
         " --character {wildcards.character:q}"
         " --preview {output.preview:q}"
