@@ -7,8 +7,9 @@ UNIT_RATIOS = (10.0, 100.0, 1000.0, 2.54, 25.4, 30.48, 3.28)
 UNIT_TOLERANCE = 0.15
 SIZE_LIMIT = 1.6
 SAME = 1e-6
-# a shift of the whole: so far (share of the size), and nine in ten vertices so much alike
+# a shift of the whole: so far (share of the size), and three in four vertices so much alike
 SHIFT_LIMIT = 0.01
+SHIFT_PART = 0.75
 SHIFT_SPREAD = 0.25
 # another axis up: so far off, and turning it back leaves so little of that
 TURN_LIMIT = 0.1
@@ -55,7 +56,7 @@ def placement_fault(sculpt: np.ndarray, neutral: np.ndarray) -> tuple[str, str] 
         return "another axis points up than in the neutral", "export it with the same up axis"
     shift = np.median(moved, axis=0)
     length = np.linalg.norm(shift)
-    spread = np.quantile(np.linalg.norm(moved - shift, axis=1), 0.9)
+    spread = np.quantile(np.linalg.norm(moved - shift, axis=1), SHIFT_PART)
     if length > SHIFT_LIMIT * size and spread < SHIFT_SPREAD * length:
         found = f"moved as a whole by {' '.join(f'{value:.3g}' for value in shift)}"
         return found, "put it back where the neutral stands, without head motion"
