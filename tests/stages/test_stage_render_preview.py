@@ -1,0 +1,108 @@
+from fractions import Fraction
+
+import av
+import numpy as np
+import pytest
+from small_take import FRAMES, RATE, SmallTake
+
+from stages import assemble_rig, bake_mesh, render_controls, render_preview, smooth_weights
+from stages.core import preview
+from stages.files import errors, film_writer, series
+
+NAMES = [f"lips_{index:02d}" for index in range(4)]
+MOUTH = np.array([[40, 60], [60, 70], [80, 60], [60, 50]], float)
+
+
+@pytest.fixture(scope="module")
+def take(tmp_path_factory):
+    made = SmallTake(tmp_path_factory.mktemp("preview"))
+    assemble_rig.main(made.rig_options())
+    smooth_weights.main(made.weights_options())
+    bake_mesh.main(made.bake_options())
+    frames = [(number / 30, np.full((96, 128, 3), 90, np.uint8)) for number in range(FRAMES)]
+    film_writer.write(made.folder / "film.mp4", frames, (128, 96), Fraction(30))
+    write_tracked(made, range(FRAMES))
+    (made.folder / "points.tsv").write_text("contour\tkind\tcount\nlips\tclosed\t4\n")
+    (made.folder / "regions.tsv").write_text("region\tpoint\tweight\nmouth\tlips\t\n")
+    return made
+
+
+def write_tracked(take, frames):
+    frames = np.array(frames)
+    points = np.tile(MOUTH, (len(frames), 1, 1))
+    points[0] = np.nan
+    columns = series.unstack(points, NAMES)
+    columns |= {f"{name}.confidence": np.ones(len(frames)) for name in NAMES}
+    columns["confidence"] = np.where(np.arange(len(frames)) == 0, 0.0, 0.9)
+    path = take.folder / "tracked.parquet"
+    series.write(path, "tracked", frames, frames / 30, columns, RATE)
+
+
+def options(take, *character):
+    return [
+        "--video", f"{take.folder}/film.mp4", "--tracked", f"{take.folder}/tracked.parquet",
+        "--point-set", f"{take.folder}/points.tsv", "--regions", f"{take.folder}/regions.tsv",
+        *character, "--shot", "talk", "--character", "face",
+        "--preview", f"{take.folder}/preview.mp4",
+    ]  # fmt: skip
+
+
+def mesh_options(take):
+    pairs = {"exr": "mesh.exr", "json": "mesh.json", "rig": "rig.npz"}
+    words = [
+        word for flag, name in pairs.items() for word in (f"--{flag}", f"{take.folder}/{name}")
+    ]
+    return options(take, *words)
+
+
+def pictures(take):
+    with av.open(str(take.folder / "preview.mp4")) as container:
+        return [(f.time, f.to_ndarray(format="rgb24")) for f in container.decode(video=0)]
+
+
+def test_the_preview_shows_contours_and_a_moving_character(take):
+    render_preview.main(mesh_options(take))
+    shown = pictures(take)
+    assert len(shown) == FRAMES
+    np.testing.assert_allclose([time for time, _ in shown], np.arange(FRAMES) / 30, atol=1e-3)
+    width, height = preview.size(128, 96)
+    assert shown[0][1].shape == (height, width, 3)
+    left = [picture[: preview.HEIGHT, : width - preview.HEIGHT].astype(int) for _, picture in shown]
+    assert np.abs(left[0] - 90).max() < 30
+    scale = preview.HEIGHT / 96
+    column, row = (MOUTH[1] * scale).astype(int)
+    assert left[5][row - 3 : row + 4, column, 0].max() > 180
+    right = [picture[: preview.HEIGHT, -preview.HEIGHT :].astype(int) for _, picture in shown]
+    assert np.abs(right[3] - right[12]).mean() > 2
+    strips = [picture[preview.HEIGHT :, width // 2 :].astype(int) for _, picture in shown]
+    assert (strips[0][:, :, 0] - strips[0][:, :, 2]).max() > 80
+    assert (strips[5][:, :, 0] - strips[5][:, :, 2]).max() < 60
+
+
+def test_only_the_frames_of_the_shot_are_shown(take):
+    write_tracked(take, range(6, 16))
+    render_preview.main(mesh_options(take))
+    assert [round(30 * time) for time, _ in pictures(take)] == list(range(10))
+    write_tracked(take, range(FRAMES))
+
+
+def test_another_rig_than_the_baked_one_is_refused(take, tmp_path):
+    other = SmallTake(tmp_path, size=11.0)
+    assemble_rig.main(other.rig_options())
+    words = mesh_options(take)
+    words[words.index("--rig") + 1] = f"{tmp_path}/rig.npz"
+    with pytest.raises(errors.InputError, match=r"mesh\.json: is not baked from"):
+        render_preview.main(words)
+
+
+def test_curves_run_beside_the_film(take):
+    time = np.arange(FRAMES) / 30
+    curves = {"jaw": np.sin(9 * time), "lid": time}
+    path = take.folder / "controls.parquet"
+    series.write(path, "controls", np.arange(FRAMES), time, curves, RATE)
+    render_controls.main(options(take, "--controls", str(path)))
+    shown = pictures(take)
+    assert len(shown) == FRAMES
+    right = [picture[: preview.HEIGHT, -preview.HEIGHT :].astype(int) for _, picture in shown]
+    orange = [np.clip(p[:, :, 0] - p[:, :, 2], 0, None).sum(axis=0) for p in right]
+    assert (np.diff([columns.argmax() for columns in orange]) > 0).all()
