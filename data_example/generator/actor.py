@@ -57,30 +57,30 @@ def _parts():
     chart_uv = (body.chart * [1, -1] / (2 * skin.CHART_EXTENT) + 0.5) * ATLAS
     gloss = 0.16 + 0.34 * body.red + 0.1 * body.lid
     ambient = 1 - 0.93 * fields.smoothstep(0.1, 0.75, body.inside)
-    result = {"skin": (body.rest, body.faces, chart_uv, None, gloss, ambient)}
+    result = {"skin": (body.rest, body.faces, chart_uv, 1.0, gloss, ambient)}
     ball, ball_faces, polar = eyes.ball()
     radius = 250 / 1.9 * polar[:, :1]
     around = np.concatenate([np.cos(polar[:, 1:]), -np.sin(polar[:, 1:])], axis=1)
     ball_uv = [256, ATLAS + 256] + radius * around
     for side in ("r", "l"):
-        result[f"ball_{side}"] = (ball, ball_faces, ball_uv, None, 1.0, 1.0)
+        result[f"ball_{side}"] = (ball, ball_faces, ball_uv, 1.0, 1.0, 1.0)
     white = np.array([1900.0, ATLAS + 400.0])
     for name in ("upper", "lower"):
         vertices, faces, colour = parts.teeth(name == "upper")
         result[name] = (vertices, faces, white, colour, 0.7, 1.0)
     vertices, faces = parts.tongue()
-    result["tongue"] = (vertices, faces, swatch("tongue"), None, 0.35, 0.6)
+    result["tongue"] = (vertices, faces, swatch("tongue"), 1.0, 0.35, 0.6)
     vertices, faces, shade = parts.ears()
-    result["ears"] = (vertices, faces, swatch("ear"), None, 0.12, shade)
+    result["ears"] = (vertices, faces, swatch("ear"), 1.0, 0.12, shade)
     vertices, faces, strand = parts.hair()
     hair_uv = [520, ATLAS + 4] + strand * [1000, 500]
-    result["hair"] = (vertices, faces, hair_uv, None, 0.35, 1.0)
+    result["hair"] = (vertices, faces, hair_uv, 1.0, 0.35, 1.0)
     vertices, faces = parts.clothes()
-    result["clothes"] = (vertices, faces, swatch("clothes"), None, 0.02, 1.0)
+    result["clothes"] = (vertices, faces, swatch("clothes"), 1.0, 0.02, 1.0)
     for side in ("r", "l"):
         count = len(UPPER_LID)
         faces = charts.strip(np.arange(2 * count).reshape(2, count), closed=False)
-        result[f"lashes_{side}"] = (np.zeros((2 * count, 3)), faces, swatch("lash"), None, 0.0, 0.7)
+        result[f"lashes_{side}"] = (np.zeros((2 * count, 3)), faces, swatch("lash"), 1.0, 0.0, 0.7)
     return body, result
 
 
@@ -97,8 +97,7 @@ def build():
         count = len(vertices)
         slices[name] = slice(start, start + count)
         faces.append(triangles + start)
-        colour = np.ones(3) if colour is None else colour
-        full = [np.broadcast_to(uv, (count, 2)), np.broadcast_to(colour, (count, 3))]
+        full = [np.broadcast_to(v, (count, w)) for v, w in ((uv, 2), (colour, 3))]
         full += [np.broadcast_to(np.reshape(v, (-1, 1)), (count, 1)) for v in (gloss, ambient)]
         columns.append(np.concatenate(full, axis=1))
         start += count

@@ -84,14 +84,15 @@ def lattice(outlines, steps, extent, margin, seed):
     steps : (float, float), distance of neighbours in front and at the back [mm]
     extent : float, radius that is covered [mm]
     margin : float, distance kept from the outlines [mm]
-    seed : int
+    seed : int, turns the circles at random; None makes them alike on both sides
     """
     rng = np.random.default_rng(seed)
     layers, radius = [], 0.0
     while radius < extent:
         step = steps[0] + (steps[1] - steps[0]) * fields.smoothstep(70, 150, radius)
         count = max(int(2 * np.pi * radius / step), 1)
-        angle = 2 * np.pi * (np.arange(count) + rng.random()) / count
+        start = count / 4 if seed is None else rng.random()
+        angle = 2 * np.pi * (np.arange(count) + start) / count
         layers.append(radius * np.stack([np.cos(angle), np.sin(angle)], axis=1))
         radius += step * 0.87
     points = np.concatenate(layers)

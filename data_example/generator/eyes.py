@@ -16,6 +16,8 @@ CORNER = np.deg2rad(52.0)
 GAZE = np.deg2rad((26.0, 20.0))
 IRIS = np.deg2rad(24.5)
 PUPIL = np.deg2rad(10.5)
+# height of the clear dome over the iris [mm]
+CORNEA = 0.55
 LID_RINGS = (-0.35, 0.0, 0.1, 0.3, 0.55, 0.8, 1.0)
 MARGIN = 1
 
@@ -47,7 +49,6 @@ def lid_angles(side, p):
     tilt = np.deg2rad(3.0) * out * s
     upper = np.deg2rad(23.5 + 8.0 * wide + 6.0 * gaze_y - 5.0 * squint)
     lower = np.deg2rad(-20.0 - 1.5 * wide + 2.5 * gaze_y + 8.0 * squint)
-    shut = np.deg2rad(-12.0)
     # the lid slides on the sphere: the blink is linear in angle, not in the picture
     meet = lower_arch * np.deg2rad(-12.0)
     low = (1 - blink) * lower_arch * lower + blink * meet
@@ -86,7 +87,7 @@ def gaze_axes(p):
 
 def pupil(side, p):
     """Return the centre of the pupil on the ball, (3,) [mm]."""
-    return CENTRES[side] + gaze_axes(p) @ np.array([0, 0, RADIUS])
+    return CENTRES[side] + gaze_axes(p) @ np.array([0, 0, RADIUS + CORNEA])
 
 
 def ball(rings=30, spokes=44):
@@ -103,7 +104,7 @@ def ball(rings=30, spokes=44):
     )
     around = 2 * np.pi * np.arange(spokes) / spokes
     a, r = np.meshgrid(angles, around, indexing="ij")
-    cornea = 0.55 * (1 - fields.smoothstep(0, IRIS * 1.05, a))
+    cornea = CORNEA * (1 - fields.smoothstep(0, IRIS * 1.05, a))
     radius = RADIUS + cornea
     vertices = np.stack(
         [radius * np.sin(a) * np.cos(r), radius * np.sin(a) * np.sin(r), radius * np.cos(a)], -1

@@ -7,7 +7,7 @@ import numpy as np
 
 from data_example.generator import shots, sound
 
-CRF = "21"
+CRF = "18"
 NOISE = 1.3 / 255
 
 

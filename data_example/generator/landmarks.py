@@ -5,7 +5,8 @@ import numpy as np
 from data_example.generator import actor, contours, eyes, fields, mouth, render, texture
 
 SIDES = (("r", "right"), ("l", "left"))
-HIDDEN_MM = 3.0
+# how far a point may lie below what is seen there: contours lie on edges, pupils do not
+HIDDEN_MM = {"point": 0.8, "open": 3.0, "closed": 3.0}
 
 
 def brows():
@@ -47,16 +48,14 @@ def visible(world, depth):
     depth : (H, W) float32 array, distance of what is seen at all samples [mm]
     """
     points = contours.point_set(world)
+    slack = [[HIDDEN_MM[kind]] * count for kind, count, _ in contours.POINT_SET.values()]
     places = np.floor(render.project(points) * render.SAMPLES).astype(int)
     height, width = depth.shape
     inside = ((places >= 0) & (places < [width, height])).all(axis=1)
-    x, y = np.clip(places, 0, [width - 1, height - 1]).T
-    nearest = np.full(len(points), -np.inf)
-    for dy in (-1, 0, 1):
-        for dx in (-1, 0, 1):
-            around = depth[np.clip(y + dy, 0, height - 1), np.clip(x + dx, 0, width - 1)]
-            nearest = np.maximum(nearest, around)
-    return inside & (-render.to_camera(points)[:, 2] < nearest + HIDDEN_MM)
+    x, y = np.clip(places, 1, [width - 2, height - 2]).T
+    around = [depth[y + dy, x + dx] for dy in (-1, 0, 1) for dx in (-1, 0, 1)]
+    nearest = np.max(around, axis=0) + np.concatenate(slack)
+    return inside & (-render.to_camera(points)[:, 2] < nearest)
 
 
 def opening(p):

@@ -72,7 +72,7 @@ def tongue():
     d, faces = _globe(16, 24)
     p = d * [17.0, 6.5, 26.0]
     p[..., 1] -= 1.6 * np.exp(-((p[..., 0] / 4.0) ** 2)) * (d[..., 1] > 0)
-    return (p + [0, -79.0, 47.0]).reshape(-1, 3), faces
+    return p.reshape(-1, 3) + np.array([0, -79.0, 47.0]), faces
 
 
 def pose_tongue(rest, p):
@@ -134,8 +134,9 @@ def hair(seed=2):
     fade = np.sqrt(np.maximum(1 - flat[:, 1] ** 2, 0))
     vertices = centre + (radius + 3.0 * cover * ridges * fade)[:, None] * flat
     strand = np.stack([around / (2 * np.pi) + 0.5, np.arccos(flat[:, 1]) / np.pi], axis=1)
-    # below the skin there is no hair: the mouth and the eyes lie there
-    faces = faces[(outside > -6)[faces].any(axis=1)]
+    # below the skin there is no hair: the mouth, the eyes and the throat lie there
+    kept = (outside > -6) & (vertices[:, 1] > -122)
+    faces = faces[kept[faces].any(axis=1)]
     return vertices, faces, strand
 
 

@@ -46,19 +46,8 @@ VOICE = {
 }
 HISS = {"s": 0.22, "sh": 0.20, "f": 0.07, "t": 0.12, "k": 0.08, "th": 0.05}
 
-# "Oh! My mum bought a wee blue parrot. It whispers poems to me, and we laugh. Shall we begin?"
-SENTENCE = (
-    "_ .55 oh .30 _ .22 m .11 aa .14 ee .09 m .12 uh .12 m .13 m .05 oh .17 t .06 uh .07 w .12 ee .20 "
-    "m .09 l .07 oo .22 m .11 ae .14 r .08 uh .10 t .09 _ .50 "
-    "ih .08 t .06 w .12 ih .09 s .11 m .11 uh .08 s .12 m .12 oh .17 uh .08 m .12 s .09 t .05 uh .06 "
-    "m .13 ee .22 _ .30 ae .12 t .06 w .10 ee .16 l .09 ae .26 f .16 _ .55 "
-    "sh .13 ae .12 l .08 w .11 ee .12 m .11 ih .08 k .07 ih .12 t .10 _ .60 "
-    "aa .42 _ .12 oo .34 _ .12 ee .36 _ .18 m .20 aa .28 m .18 aa .26 m .16 _ .60 "
-    "th .12 ae .17 k .09 s .12 _ .9"
-)
 
-
-def schedule(text=SENTENCE, pace=1.0):
+def schedule(text, pace=1.0):
     """Return the phones of a written schedule as (name, start, end) [s], all times by a pace."""
     words = text.split()
     result, at = [], 0.0
