@@ -7,6 +7,7 @@ searched until the face is found again.
 import argparse
 from collections.abc import Sequence
 
+import cv2
 import numpy as np
 
 from stages import cli
@@ -25,6 +26,7 @@ def build_parser() -> argparse.ArgumentParser:
 
 def main(argv: Sequence[str]) -> None:
     """Read the film, track, write the points."""
+    cv2.setNumThreads(1)
     arguments = build_parser().parse_args(argv)
     arrays, meta = model.read(arguments.tracker, "tracker")
     try:

@@ -12,7 +12,7 @@ RED_GREEN = np.array([1.5, -1.5, 0.0], np.float32)
 DIRECTIONS = ((LIGHT, 6), (RED_GREEN, 4))
 CHANNELS = 10
 GRID = 5
-SPACING_PX = 4.0
+SPACING_PX = 5.0
 NEIGHBOURHOOD_PX = 25
 NOISE_LEVEL = 2.0  # grey levels a pixel; flat skin must not be blown up
 
@@ -34,7 +34,9 @@ def gradients(image: np.ndarray) -> np.ndarray:
         plane = cv2.transform(softened, mixture[None])
         x = cv2.Sobel(plane, cv2.CV_32F, 1, 0, scale=0.125)
         y = cv2.Sobel(plane, cv2.CV_32F, 0, 1, scale=0.125)
-        level = cv2.blur(cv2.magnitude(x, y), (NEIGHBOURHOOD_PX, NEIGHBOURHOOD_PX)) + NOISE_LEVEL
+        # cv2.magnitude rounds by the alignment of its memory: other bytes from run to run
+        size = np.sqrt(x * x + y * y)
+        level = cv2.blur(size, (NEIGHBOURHOOD_PX, NEIGHBOURHOOD_PX)) + NOISE_LEVEL
         x, y = x / level, y / level
         for angle in 2 * np.pi * np.arange(count) / count:
             along = np.float32(np.cos(angle)) * x + np.float32(np.sin(angle)) * y
