@@ -5,6 +5,12 @@ tracked.parquet (at the film's own times) and performance.parquet (at a constant
 """
 
 
+def label_proposals():
+    """Return the proposals of every session."""
+    sessions = cells(SHOW["sessions"], "session")
+    return expand("results/sessions/{session}/label_proposals.tsv", session=sessions)
+
+
 def labelled(column):
     """Return a function that lists a column of a session's labelled shots."""
 
