@@ -8,6 +8,7 @@ morphed into each other, and pixels and points are analysed together (CB02 secti
 import argparse
 from collections.abc import Sequence
 
+import cv2
 import numpy as np
 
 from stages import cli
@@ -36,6 +37,7 @@ def build_parser() -> argparse.ArgumentParser:
 
 def main(argv: Sequence[str]) -> None:
     """Read films and labels, train, write the tracker."""
+    cv2.setNumThreads(1)
     arguments = build_parser().parse_args(argv)
     if not len(arguments.videos) == len(arguments.labels) == len(arguments.shots):
         raise ValueError("--videos, --labels and --shots: one of each for every film")
@@ -58,9 +60,10 @@ def main(argv: Sequence[str]) -> None:
         message = f"{len(pictures)} labelled frames are too few: label a dozen, at least"
         raise errors.InputError(arguments.labels[0], f"{message} {tracker_training.LEAST_LABELLED}")
     cli.logger.info("learning from %d labelled frames of %d points", len(shapes), len(names))
-    tracker = tracker_training.train(
-        pictures, np.array(shapes), _groups(names, shapes), arguments.method, arguments.seed
-    )
+    shapes = np.array(shapes)
+    owners = [point_set.contour_of(name) for name in names]
+    groups = point_groups.nested(owners, similarity.mean_shape(shapes, 1.0))
+    tracker = tracker_training.train(pictures, shapes, groups, arguments.method, arguments.seed)
     height, width = pictures[0].shape[:2]
     model.write(
         arguments.tracker,
@@ -111,13 +114,6 @@ def _check_inside(
             f"the picture of {width}x{height}; move it, or give the film that was labelled"
         )
         raise errors.InputError(table, message)
-
-
-def _groups(names: list[str], shapes: list[np.ndarray]) -> list[np.ndarray]:
-    """Return the points that are refined together."""
-    owners = [point_set.contour_of(name) for name in names]
-    contours = [np.flatnonzero([o == owner for o in owners]) for owner in dict.fromkeys(owners)]
-    return point_groups.nested(contours, similarity.mean_shape(np.array(shapes), 1.0))
 
 
 if __name__ == "__main__":

@@ -13,7 +13,8 @@ import numpy as np
 from stages.core import patch_features, similarity, warp
 from stages.core.face_frame import FaceFrame
 
-SPREADS = (1.5, 1.2, 1.0, 1.0)
+SPREADS = (1.0, 1.2, 1.0, 0.8)
+SHRINK = 2.0
 
 
 @dataclasses.dataclass(frozen=True)
@@ -44,10 +45,11 @@ class Look:
     channels: np.ndarray
 
 
-def look(image: np.ndarray, frame: FaceFrame, points: np.ndarray) -> Look:
-    """Cut out the face where the points (P, 2) [px] put it, and take its gradients."""
-    pose = frame.pose(points)
-    return Look(pose, patch_features.gradients(warp.prewarp(image, pose, frame.size)))
+def look(image: np.ndarray, frame: FaceFrame, points: np.ndarray, shrink: float = 1.0) -> Look:
+    """Cut out the face where the points (P, 2) [px] put it, shrunk, and take its gradients."""
+    pose = frame.pose(points) * [shrink, shrink, 1]
+    size = (round(frame.size[0] / shrink), round(frame.size[1] / shrink))
+    return Look(pose, patch_features.gradients(warp.prewarp(image, pose, size)))
 
 
 def describe(seen: Look, points: np.ndarray) -> np.ndarray:
@@ -81,7 +83,7 @@ def refine(
     points : (P, 2) float array [px of the picture]
     seen : the last look, in whose frame the last stages worked
     """
-    seen = look(image, frame, points)
+    seen = look(image, frame, points, SHRINK if descent.weights else 1.0)
     local = similarity.apply(similarity.invert(seen.pose), points)
     for stage in range(len(descent.weights)):
         if stage == 1:
@@ -138,7 +140,10 @@ def train(
     points, weights, biases = starts.copy(), [], []
     for stage, spread in enumerate(SPREADS):
         if stage < 2:
-            seen = [look(one, frame, x) for one, x in zip(images, points, strict=True)]
+            seen = [
+                look(one, frame, x, SHRINK if stage == 0 else 1.0)
+                for one, x in zip(images, points, strict=True)
+            ]
             inverse = [similarity.invert(one.pose) for one in seen]
             goal = np.array([similarity.apply(i, x) for i, x in zip(inverse, truth, strict=True)])
             local = np.array([similarity.apply(i, x) for i, x in zip(inverse, points, strict=True)])

@@ -1,4 +1,4 @@
-"""Faces made wrong on purpose, and faces under another light, to train the judge of points on."""
+"""Faces made wrong on purpose, to train the judge of points on."""
 
 from collections.abc import Sequence
 
@@ -8,23 +8,6 @@ from stages.core import similarity
 
 SHIFT = (0.15, 0.8)
 GROUP_SHIFT = (0.12, 0.4)
-
-
-def relit(
-    image: np.ndarray, gain: float, colour: float, noise: float, rng: np.random.Generator
-) -> np.ndarray:
-    """Return a picture under another light, with another grain.
-
-    Parameters
-    ----------
-    image : (H, W, 3) uint8 array
-    gain, colour : standard deviations of the log gain of all channels and of each
-    noise : standard deviation of the grain [grey levels]
-    rng : draws them
-    """
-    gains = np.exp(gain * rng.normal() + colour * rng.normal(size=3)).astype(np.float32)
-    grain = rng.standard_normal(image.shape, np.float32)
-    return np.clip(image * gains + np.float32(noise) * grain, 0, 255).astype(np.uint8)
 
 
 def astray(

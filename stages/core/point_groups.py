@@ -1,33 +1,42 @@
-"""Which contours of a face belong together: a pupil to its eye, the inner lips to the outer."""
+"""Which points of a face belong together: a pupil to its eye, the inner lips to the outer."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
 
-def nested(contours: Sequence[np.ndarray], shape: np.ndarray) -> list[np.ndarray]:
-    """Join every contour to the one that it lies in.
+def nested(owners: Sequence[str], shape: np.ndarray) -> list[np.ndarray]:
+    """Join the points of every contour to those of the one that it lies in.
 
     Parameters
     ----------
-    contours : int arrays, the points of each contour
+    owners : for each of the P points, the contour that it belongs to
     shape : (P, 2) float array, the mean shape, upright
 
     Returns
     -------
-    int arrays, ascending, which together hold each point of the contours once
+    int arrays, each ascending, which together hold each point once
+
+    Raises
+    ------
+    ValueError
+        if the lengths differ
     """
-    boxes = [(shape[c].min(axis=0), shape[c].max(axis=0)) for c in contours]
-    owner = list(range(len(contours)))
-    for inner, points in enumerate(contours):
-        middle = shape[points].mean(axis=0)
-        for outer, (low, high) in enumerate(boxes):
-            larger = np.prod(high - low) > np.prod(boxes[inner][1] - boxes[inner][0])
-            if outer != inner and larger and ((middle > low) & (middle < high)).all():
-                owner[inner] = outer
-    while any(owner[owner[c]] != owner[c] for c in range(len(contours))):
-        owner = [owner[o] for o in owner]
-    return [
-        np.sort(np.concatenate([contours[c] for c in range(len(contours)) if owner[c] == o]))
-        for o in sorted(set(owner))
+    if len(owners) != len(shape):
+        raise ValueError(f"{len(owners)} owners for {len(shape)} points")
+    contours = [
+        np.flatnonzero([owner == name for owner in owners]) for name in dict.fromkeys(owners)
     ]
+    contours.sort(key=lambda points: (-np.prod(np.ptp(shape[points], axis=0)), points[0]))
+    groups: list[list[np.ndarray]] = []
+    for points in contours:
+        middle = shape[points].mean(axis=0)
+        for group in groups:
+            box = shape[group[0]]
+            if ((middle > box.min(axis=0)) & (middle < box.max(axis=0))).all():
+                group.append(points)
+                break
+        else:
+            groups.append([points])
+    joined = [np.sort(np.concatenate(group)) for group in groups]
+    return sorted(joined, key=lambda points: points[0])

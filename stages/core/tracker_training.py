@@ -11,6 +11,7 @@ from stages.core import (
     eigen_points,
     face_frame,
     face_search,
+    face_variations,
     false_faces,
     morph,
     similarity,
@@ -20,16 +21,20 @@ from stages.core.face_tracker import FaceTracker
 
 METHODS = ("eigen_points", "eigen_points_descent")
 LEAST_LABELLED = 3
-RADIUS_PX = 38.0
-MARGIN_PX = 14.0
+RADIUS_PX = 57.0
+MARGIN_PX = 20.0
 TRAINING_MARGIN_PX = 26
 COMPONENTS = 15
 FRACTIONS = (0.25, 0.5, 0.75)
 MORPH_LIMIT = 240
 LABEL_WEIGHT = 3
-STARTS = 4
+STARTS = 2
 RIDGE = 0.5
-START_SHIFT_PX, START_ANGLE, START_SCALE = 2.0, 0.03, 0.03
+START_SPREAD = (2.0, 0.03, 0.03)
+START_GROUP = 0.5
+BENT = 8
+BENT_GROUP = 1.5
+GROUP_LIMITS = (4.0, 0.3)
 LIGHT = (0.15, 0.08, 1.5)
 JUDGED_MORPHS = 60
 
@@ -82,7 +87,7 @@ def train(
         raise ValueError(f"groups do not hold each of {shapes.shape[1]} points once")
     rng = np.random.default_rng(seed)
     frame = face_frame.around(similarity.mean_shape(shapes, RADIUS_PX), MARGIN_PX)
-    faces = _faces(pictures, shapes, frame, rng)
+    faces = _faces(pictures, shapes, frame, groups, rng)
     eigen = eigen_points.train(faces.images, faces.shapes, frame, COMPONENTS)
     cascade = descent.Descent((), ())
     if method == "eigen_points_descent":
@@ -100,6 +105,7 @@ def _faces(
     pictures: Sequence[np.ndarray],
     shapes: np.ndarray,
     frame: face_frame.FaceFrame,
+    groups: Sequence[np.ndarray],
     rng: np.random.Generator,
 ) -> Faces:
     """Pre-warp the labelled frames and morph between them."""
@@ -119,10 +125,16 @@ def _faces(
     )
     morphs, bent, parents = morph.enlarge(images, local, FRACTIONS, MORPH_LIMIT, rng)
     own = np.arange(len(shapes))
+    again = np.repeat(own, BENT)
+    spread = face_variations.group_spread(_upright(local, frame), groups, GROUP_LIMITS)
+    goals = [face_variations.stretched(local[i], groups, BENT_GROUP * spread, rng) for i in again]
+    varied = [warp.bend(images[i], local[i], goal) for i, goal in zip(again, goals, strict=True)]
     return Faces(
-        np.concatenate([images, morphs]),
-        np.concatenate([local, bent]),
-        np.concatenate([np.stack([own, own], axis=1), parents]),
+        np.concatenate([images, morphs, np.array(varied)])
+        if BENT
+        else np.concatenate([images, morphs]),
+        np.concatenate([local, bent, np.array(goals)]) if BENT else np.concatenate([local, bent]),
+        np.concatenate([np.stack([own, own], axis=1), parents, np.stack([again, again], axis=1)]),
         len(shapes),
     )
 
@@ -137,36 +149,20 @@ def _cascade(
     repeats = np.full(len(faces.images), STARTS)
     repeats[: faces.labelled] *= LABEL_WEIGHT
     sources = np.repeat(np.arange(len(repeats)), repeats)
-    images = np.array([false_faces.relit(faces.images[m], *LIGHT, rng) for m in sources])
-    starts = _starts(faces.shapes, sources, frame, rng)
+    images = np.array([face_variations.relit(faces.images[m], *LIGHT, rng) for m in sources])
+    spread = START_GROUP * face_variations.group_spread(
+        _upright(faces.shapes[: faces.labelled], frame), groups, GROUP_LIMITS
+    )
+    starts = face_variations.starts(faces.shapes, sources, frame, groups, START_SPREAD, spread, rng)
     cascade, _ = descent.train(images, sources, faces.shapes[sources], starts, frame, groups, RIDGE)
     return cascade
 
 
-def _starts(
-    shapes: np.ndarray,
-    sources: np.ndarray,
-    frame: face_frame.FaceFrame,
-    rng: np.random.Generator,
-) -> np.ndarray:
-    """Return a perturbed start for every source: part of another's shape, moved a little."""
-    upright = np.array(
+def _upright(shapes: np.ndarray, frame: face_frame.FaceFrame) -> np.ndarray:
+    """Return shapes (N, P, 2) aligned to the mean shape."""
+    return np.array(
         [similarity.apply(similarity.fit_similarity(s, frame.points), s) for s in shapes]
     )
-    starts = []
-    for source in sources:
-        share = rng.random()
-        other = upright[rng.integers(len(upright))]
-        shape = (1 - share) * upright[source] + share * other
-        placed = similarity.apply(frame.pose(shapes[source]), shape)
-        moved = similarity.about(
-            placed.mean(axis=0),
-            START_ANGLE * rng.normal(),
-            np.exp(START_SCALE * rng.normal()),
-            START_SHIFT_PX * rng.normal(size=2),
-        )
-        starts.append(similarity.apply(moved, placed))
-    return np.array(starts)
 
 
 def _judge(
@@ -186,7 +182,7 @@ def _judge(
         apart = (faces.parents[chosen] != i).all(axis=1)
         left_mean, left_basis = confidence.span(described[apart])
         for _ in range(4):
-            image = false_faces.relit(faces.images[i], *LIGHT, rng)
+            image = face_variations.relit(faces.images[i], *LIGHT, rng)
             shape = faces.shapes[i] + 0.6 * rng.normal(size=faces.shapes[i].shape)
             seen = _described(image, shape, frame)
             right.append(confidence.log_distance(left_mean, left_basis, seen))
