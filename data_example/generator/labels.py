@@ -5,7 +5,7 @@ from scipy.spatial import transform
 
 from data_example.generator import contours, landmarks, params
 
-FRAMES = {"rom": (3, 43, 76, 94, 124, 168, 274, 358), "talk": (27, 218), "turn": (78, 130)}
+FRAMES = {"rom": (3, 43, 76, 94, 124, 163, 272, 358), "talk": (125, 218), "turn": (70, 85)}
 NOISE_PX = 0.3
 
 

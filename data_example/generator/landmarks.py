@@ -6,7 +6,7 @@ from data_example.generator import actor, contours, eyes, fields, mouth, render,
 
 SIDES = (("r", "right"), ("l", "left"))
 # how far a point may lie below what is seen there: contours lie on edges, pupils do not
-HIDDEN_MM = {"point": 0.8, "open": 3.0, "closed": 3.0}
+EDGE_MM, PUPIL_MM = 3.0, 0.5
 
 
 def brows():
@@ -48,14 +48,16 @@ def visible(world, depth):
     depth : (H, W) float32 array, distance of what is seen at all samples [mm]
     """
     points = contours.point_set(world)
-    slack = [[HIDDEN_MM[kind]] * count for kind, count, _ in contours.POINT_SET.values()]
+    kinds = [[kind] * count for kind, count, _ in contours.POINT_SET.values()]
+    single = np.concatenate(kinds) == "point"
     places = np.floor(render.project(points) * render.SAMPLES).astype(int)
     height, width = depth.shape
     inside = ((places >= 0) & (places < [width, height])).all(axis=1)
     x, y = np.clip(places, 1, [width - 2, height - 2]).T
     around = [depth[y + dy, x + dx] for dy in (-1, 0, 1) for dx in (-1, 0, 1)]
-    nearest = np.max(around, axis=0) + np.concatenate(slack)
-    return inside & (-render.to_camera(points)[:, 2] < nearest)
+    edge = np.max(around, axis=0) + EDGE_MM
+    behind = -render.to_camera(points)[:, 2]
+    return inside & (behind < np.where(single, depth[y, x] + PUPIL_MM, edge))
 
 
 def opening(p):
