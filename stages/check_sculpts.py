@@ -67,6 +67,7 @@ def _compare(
     actor: dict[str, np.ndarray],
     offsets: dict[sculpts.Key, np.ndarray],
     size: float,
+    is_controls: bool,
 ) -> None:
     """Look for sculpts of a region that are equal to, or contradict, each other."""
     names = [name for name in actor if (region, name) in offsets]
@@ -82,6 +83,10 @@ def _compare(
         return
     source = np.stack([actor[name] for name in names])
     target = np.stack([offsets[region, name].ravel() for name in names])
+    if is_controls:
+        # degrees and centimetres stand side by side: measure each control by its own range
+        extent = np.abs(target).max(axis=0)
+        target = target / np.where(extent > 0, extent, 1.0)
     grams = source @ source.T, target @ target.T
     pairs = contradictions.exchanged_pairs(*grams)
     for i, j in pairs:
@@ -120,7 +125,7 @@ def main(argv: Sequence[str]) -> None:
         offsets = _read(states, neutral, present)
         size = sculpt_checks.diagonal(neutral.coordinates)
         for region, shapes in actor.items():
-            _compare(states, region, shapes, offsets, size)
+            _compare(states, region, shapes, offsets, size, neutral.is_controls)
     states.add_unused(options.sculpts)
     rows = list(states.rows.values())
     sculpts.write_states(options.sculpts_state, rows, [options.key_shapes, *options.sculpts])

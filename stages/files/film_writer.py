@@ -14,7 +14,7 @@ import numpy as np
 from stages.files import atomic, errors
 
 CLOCK_HZ = 90000
-VIDEO_OPTIONS = {"preset": "veryfast", "crf": "20", "threads": "1"}
+VIDEO_OPTIONS = {"preset": "superfast", "crf": "22", "threads": "1"}
 CONTAINER_OPTIONS = {"fflags": "+bitexact", "movflags": "+faststart"}
 SOUND_BITS_PER_S = 128000
 # sound is written this far ahead of the pictures, so that the muxer holds little back

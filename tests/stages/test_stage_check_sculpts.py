@@ -102,3 +102,38 @@ def test_unreadable_sculpts_and_a_missing_neutral_do_not_stop_it(take):
     assert "no vertices" in states(take)["mouth", "rom_f0003"]["detail"]
     (take.folder / "char" / "neutral.obj").unlink()
     assert all(row["state"] == "missing" for row in states(take).values())
+
+
+def control_poses(take, error, seed):
+    """Sculpt the key shapes as poses of controls in degrees, centimetres and shares."""
+    rng = np.random.default_rng(seed)
+    folder = take.folder / "sliders"
+    scale = np.array([30.0, 30.0, 1.0, 0.1, 1.0, 5.0])
+    names = [f"control_{index}" for index in range(6)]
+    poses = {}
+    for region, row in REGIONS.items():
+        for order, name in enumerate(row):
+            shape = np.zeros(6)
+            shape[order], shape[order + 3] = 1.0, 0.5
+            poses[region, name] = shape * scale * (1 + error * rng.normal(size=6))
+    for key, values in [(None, np.zeros(6)), *poses.items()]:
+        path = (
+            folder / "neutral.csv" if key is None else folder / "sculpts" / key[0] / f"{key[1]}.csv"
+        )
+        path.parent.mkdir(parents=True, exist_ok=True)
+        rows = [f"{name},{value}" for name, value in zip(names, values, strict=True)]
+        path.write_text("\n".join(["name,value", *rows]) + "\n")
+    options = take.check_options(take.folder / "sculpts.parquet")
+    first, last = options.index("--sculpts") + 1, options.index("--sculpt-folder")
+    sculpted = [str(path) for path in sorted((folder / "sculpts").rglob("*.csv"))]
+    options[first:last] = sculpted
+    options[options.index("--neutral") + 1] = f"{folder}/neutral.csv"
+    options[options.index("--sculpt-folder") + 1] = f"{folder}/sculpts"
+    check_sculpts.main(options)
+    return {(r["region"], r["key_shape"]): r for r in sculpts.read_states(options[-1])}
+
+
+def test_controls_in_different_units_contradict_nothing(take):
+    for seed in range(5):
+        found = control_poses(take, error=0.1, seed=seed)
+        assert [row["state"] for row in found.values()] == ["present"] * len(found)
