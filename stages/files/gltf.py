@@ -111,6 +111,7 @@ class _Buffer:
         stored = gltf.AccessorSparseValues(bufferView=self.view(rows[filled]))
         self.accessors.append(
             gltf.Accessor(
+                byteOffset=None,  # not allowed where there is no view, yet written by default
                 componentType=gltf.FLOAT,
                 count=len(rows),
                 type=gltf.VEC3,

@@ -80,6 +80,8 @@ def test_the_glb_is_what_viewers_ask_for(take):
         if "min" in entry:
             np.testing.assert_allclose(entry["min"], values.min(axis=0), atol=1e-7)
             np.testing.assert_allclose(entry["max"], values.max(axis=0), atol=1e-7)
+        # the specification forbids an offset into a view that is not there
+        assert "bufferView" in entry or "byteOffset" not in entry
     for view in glb.document["bufferViews"]:
         assert view["byteOffset"] % 4 == 0
     assert all("sparse" in glb.document["accessors"][t["POSITION"]] for t in primitive["targets"])
