@@ -83,7 +83,7 @@ def make_labels(folder):
 
 def make_characters(folder):
     """Write the characters, and the tables of the settings that name them and their locks."""
-    chosen, rows = sculpting.write_all(folder / "characters")
+    rows = sculpting.write_all(folder / "characters")
     tables = folder / "proposed_config"
     tables.mkdir(parents=True, exist_ok=True)
     columns = ("unit", "up_axis", "pivot", "face_unit")
@@ -93,7 +93,7 @@ def make_characters(folder):
         lines.append("\t".join(cells + [row[column] for column in columns]))
     (tables / "characters.tsv").write_text("\n".join(lines) + "\n", encoding="utf-8")
     lines = ["actor\tregion\tshot\tframe\tstate"]
-    for region, frames in chosen.items():
+    for region, frames in selection.LOCKED.items():
         lines += [f"ada\t{region}\t{selection.SHOT}\t{frame}\tlocked" for frame in frames]
     (tables / "key_shapes.tsv").write_text("\n".join(lines) + "\n", encoding="utf-8")
     lines = ["actor\tcharacter\tshots", *(f"ada\t{name}\t" for name, _, _ in rows)]

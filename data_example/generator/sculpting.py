@@ -5,7 +5,6 @@ import numpy as np
 from data_example.generator import (
     drawing,
     human_mesh,
-    landmarks,
     params,
     puppet,
     radio,
@@ -60,14 +59,6 @@ def _csv(values):
     return "\n".join(["name,value", *rows]) + "\n"
 
 
-def key_frames():
-    """Return the locked frames, region -> list, and the expression table of their shot."""
-    take = shots.TAKES[selection.SHOT]()
-    features = selection.still_features(take, landmarks.brows())
-    chosen = {region: selection.frames_of(region, take, features) for region in selection.COUNTS}
-    return chosen, take.expression
-
-
 def _write(path, text):
     """Write a file, making its folder."""
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -85,13 +76,12 @@ def write_all(folder, seed=41):
 
     Returns
     -------
-    chosen : dict region -> list of frames
     rows : list of (character, file of its neutral, cells of its row of characters.tsv)
     """
-    chosen, expression = key_frames()
+    expression = shots.TAKES[selection.SHOT]().expression
     poses = [
         (region, frame, params.only(params.from_row(expression[frame]), region))
-        for region, frames in chosen.items()
+        for region, frames in selection.LOCKED.items()
         for frame in frames
     ]
     zero = params.neutral()
@@ -117,4 +107,4 @@ def write_all(folder, seed=41):
         name = f"{selection.SHOT}_f{frame:04d}.csv"
         _write(folder / "puppet" / "sculpts" / region / name, _csv(made))
     rows.append(("puppet", "neutral.csv", PUPPET_ROW))
-    return chosen, rows
+    return rows

@@ -20,6 +20,7 @@ from data_example.generator import (
     radio,
     render,
     sculpting,
+    selection,
     shots,
     truth,
 )
@@ -158,25 +159,23 @@ def test_camera_noise_is_the_same_for_the_same_seed_and_frame():
 @pytest.fixture(scope="module")
 def rewritten(tmp_path_factory):
     folder = tmp_path_factory.mktemp("characters")
-    chosen, rows = sculpting.write_all(folder)
-    return folder, chosen, rows
+    sculpting.write_all(folder)
+    return folder
 
 
 def test_characters_are_made_again_byte_by_byte(rewritten):
-    folder, _, _ = rewritten
     kept = FOLDER / "characters"
-    names = sorted(p.relative_to(folder) for p in folder.rglob("*") if p.is_file())
+    names = sorted(p.relative_to(rewritten) for p in rewritten.rglob("*") if p.is_file())
     assert names == sorted(p.relative_to(kept) for p in kept.rglob("*") if p.is_file())
     for name in names:
-        assert (folder / name).read_bytes() == (kept / name).read_bytes(), name
+        assert (rewritten / name).read_bytes() == (kept / name).read_bytes(), name
 
 
-def test_locked_frames_are_those_that_are_sculpted(rewritten):
-    _, chosen, _ = rewritten
+def test_locked_frames_are_those_that_are_sculpted():
     text = (FOLDER / "proposed_config" / "key_shapes.tsv").read_text(encoding="utf-8")
     locks = [tuple(row.split("\t")) for row in text.splitlines()[1:]]
     assert [(r, int(f)) for _, r, _, f, _ in locks] == [
-        (region, frame) for region, frames in chosen.items() for frame in frames
+        (region, frame) for region, frames in selection.LOCKED.items() for frame in frames
     ]
     for character in (*CHARACTERS, "puppet"):
         for _, region, shot, frame, _ in locks:
@@ -197,12 +196,11 @@ def test_meshes_are_read_by_another_reader_and_are_small(name):
 
 
 @pytest.mark.parametrize("name", CHARACTERS)
-def test_sculpts_are_about_a_tenth_off_the_true_pose(name, rewritten):
-    _, chosen, _ = rewritten
+def test_sculpts_are_about_a_tenth_off_the_true_pose(name):
     character = CHARACTERS[name].build(params.neutral())
     neutral = character.pose(params.neutral())
     table, off = shots.TAKES["rom"]().expression, []
-    for region, frames in chosen.items():
+    for region, frames in selection.LOCKED.items():
         for frame in frames:
             path = FOLDER / "characters" / name / "sculpts" / region / f"rom_f{frame:04d}.obj"
             made = trimesh.load(path, process=False, maintain_order=True).vertices
