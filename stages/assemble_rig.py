@@ -77,6 +77,8 @@ def _wanted(
                 options.sculpt_folder, shape.region, shape.key_shape, options.neutral
             )
             wanted.append((shape.region, shape.key_shape, path))
+    if not wanted:
+        raise errors.InputError(options.masks, "no region moves a vertex: give one some weight")
     return wanted
 
 

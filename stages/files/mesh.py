@@ -53,10 +53,16 @@ def read(path: str | Path) -> Mesh:
         np.array(vertices, float).reshape(-1, 3),
         np.array(sizes, np.int32),
         np.array(corners, np.int32),
-        np.array(colours, float).reshape(-1, 3),
+        _colours(colours),
     )
     _check(path, mesh)
     return mesh
+
+
+def _colours(values: np.ndarray | list) -> np.ndarray:
+    """Return colours in 0..1, as some programs write them, where others write 0 to 255."""
+    colours = np.array(values, float).reshape(-1, 3)
+    return np.clip(colours / 255 if colours.max(initial=0.0) > 1 else colours, 0.0, 1.0)
 
 
 def _check(path: Path, mesh: Mesh) -> None:
@@ -74,8 +80,3 @@ def _check(path: Path, mesh: Mesh) -> None:
         face = int(np.searchsorted(np.cumsum(mesh.sizes), outside[0], side="right"))
         message = f"face {face} names vertex {mesh.corners[outside[0]]}, the file has {count}"
         raise errors.InputError(path, message + " (counted from 0): export the whole mesh again")
-
-
-def scale(vertices: np.ndarray) -> float:
-    """Return the diagonal of the bounding box: the size that tolerances refer to."""
-    return float(np.linalg.norm(vertices.max(axis=0) - vertices.min(axis=0)))

@@ -129,3 +129,9 @@ def test_colours_count_only_if_every_vertex_has_one(tmp_path):
     path.write_text("v 0 0 0 1 1 1\nv 0 0 1\nv 0 1 0 1.0\n")
     assert obj.read(path)[3] == []
     assert mesh.read(path).colours.shape == (0, 3)
+
+
+def test_colours_up_to_255_are_brought_to_one(tmp_path):
+    path = tmp_path / "a.obj"
+    path.write_text("v 0 0 0 255 0 51\nv 0 0 1 0 0 0\n")
+    np.testing.assert_allclose(mesh.read(path).colours, [[1, 0, 0.2], [0, 0, 0]])

@@ -71,6 +71,11 @@ def test_a_region_that_moves_nothing_needs_no_sculpts(take):
     made = assembled(take)
     assert made.names == [f"mouth.{name}" for name in REGIONS["mouth"]]
     assert made.masks[0].min() == 1.0
+    (take.folder / "char" / "masks.tsv").write_text(
+        "region\taxis\tfrom\tto\nneck\t\t\t\neyes\t\t\t\nmouth\t\t\t\n"
+    )
+    with pytest.raises(errors.InputError, match=r"masks\.tsv: no region moves a vertex"):
+        assembled(take)
 
 
 def test_a_pivot_that_is_none_is_refused(take):
