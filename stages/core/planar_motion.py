@@ -10,9 +10,9 @@ import numpy as np
 MIN_POINTS = 4
 PAIR_FRAMES = 100  # as many frames as the start needs
 ROUNDS = 3
-SHEAR_DEVIATION = 0.1  # a head turned by 25 degrees is foreshortened by a tenth
+SHEAR_DEVIATION = 0.05  # a head turned by 25 degrees is foreshortened by twice that
 PAIRS = 400  # one rigid pair among so many draws is certain enough
-FLOOR = 0.003  # face units: no point is known better than this
+FLOOR = 0.01  # face units: no point is known better than this
 
 
 def _system(
@@ -139,8 +139,9 @@ def clip_deviation(
     """Estimate how much each point's place on the face is to be distrusted.
 
     Starts from `consensus_deviation` and repeats it a few times with the motion that it gives.
-    The result is the square of the deviation over its median: many points of one jaw move
-    together, so they must count far less than as many points with errors of their own.
+    The result is the deviation, squared over the median where it is above that: many points of
+    one jaw move together, so they must count far less than as many points with errors of their
+    own. Below the median it stays honest, so that no few points overrule the expected size of `D`.
     (Estimating the variances by expectation maximisation instead was tried: it assumes errors of
     their own, and ends with the jaw as the head.)
 
@@ -175,9 +176,9 @@ def clip_deviation(
 
 
 def _distrust(deviation: np.ndarray) -> np.ndarray:
-    """Return the squares over the median, each deviation kept between the floor and one."""
+    """Return the deviations, those above the median squared over it, from the floor up to one."""
     kept = np.clip(np.where(np.isfinite(deviation), deviation, 1.0), FLOOR, 1.0)
-    return kept**2 / np.median(kept)
+    return kept * np.maximum(kept / np.median(kept), 1.0)
 
 
 def decompose(linear: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
