@@ -73,7 +73,7 @@ TURN_HEAD = """
 176:4,-8,5,130 194:-3,8,-6,-40 208:0,5,0,-140 222:5,14,10,-80 239:0,0,0,0
 """
 
-# sounds and their seconds: "Oh! My mum bought a wee blue parrot. It whispers poems to me, and we
+# sounds and their seconds: "Oh! My mum bought me a blue parrot. It whispers poems to me, and we
 # laugh. Shall we begin? Ah, ooh, ee, mama... Thanks."; p and b are m, closed lips
 TALK_SPEECH = """
 _ .55 oh .30 _ .22 m .11 aa .14 ee .09 m .12 uh .12 m .13 m .05 oh .17 t .06 uh .07 w .12 ee
