@@ -10,6 +10,10 @@ from stages import cli
 from stages.core import head_transform, polygons, preview, rasterize, shade
 from stages.files import errors, exr, film, film_writer, rig, tracked_film
 
+# the camera is fixed by so many frames of the take, without this share at either end
+SAMPLED_FRAMES = 100
+STRAY = 0.02
+
 
 def build_parser() -> argparse.ArgumentParser:
     """Return the stage's command line."""
@@ -27,10 +31,18 @@ def build_parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _painter(character: rig.Rig, description: dict) -> Callable[[np.ndarray], np.ndarray]:
+def _usual_bounds(baked: exr.Reader) -> tuple[np.ndarray, np.ndarray]:
+    """Return the corners of the box that the character stays in, but for a stray frame or two."""
+    rows = np.unique(np.linspace(0, baked.frames - 1, SAMPLED_FRAMES).astype(int))
+    corners = [(frame.min(axis=0), frame.max(axis=0)) for frame in map(baked.frame, rows)]
+    low, high = np.transpose(corners, (1, 0, 2))
+    return np.quantile(low, STRAY, axis=0), np.quantile(high, 1 - STRAY, axis=0)
+
+
+def _painter(character: rig.Rig, baked: exr.Reader) -> Callable[[np.ndarray], np.ndarray]:
     """Return a function that draws the (V, 3) positions of a character from a fixed camera."""
     axes = head_transform.face_axes(character.up_axis)
-    low, high = (np.array(description["bounds"][end]) for end in ("min", "max"))
+    low, high = _usual_bounds(baked)
     camera = rasterize.facing_camera(low, high, axes)
     behind = rasterize.backdrop(preview.HEIGHT)
     triangles = polygons.triangulate(character.sizes, character.corners)
@@ -57,7 +69,7 @@ def main(argv: Sequence[str]) -> None:
     if description["vertex_hash"] != rig.vertex_hash(character):
         raise errors.InputError(options.json, f"is not baked from {options.rig}: bake again")
     baked = exr.Reader(options.exr, description)
-    paint = _painter(character, description)
+    paint = _painter(character, baked)
     progress = cli.Progress("preview", len(tracked.frame))
 
     def character_at(time_s: float) -> np.ndarray:

@@ -7,7 +7,7 @@ from small_take import FRAMES, RATE, SmallTake
 
 from stages import assemble_rig, bake_mesh, render_controls, render_preview, smooth_weights
 from stages.core import preview
-from stages.files import errors, film_writer, series
+from stages.files import errors, film_writer, rig, series, weights
 
 NAMES = [f"lips_{index:02d}" for index in range(4)]
 MOUTH = np.array([[40, 60], [60, 70], [80, 60], [60, 50]], float)
@@ -84,6 +84,29 @@ def test_only_the_frames_of_the_shot_are_shown(take):
     render_preview.main(mesh_options(take))
     assert [round(30 * time) for time, _ in pictures(take)] == list(range(10))
     write_tracked(take, range(FRAMES))
+
+
+def test_one_stray_frame_does_not_push_the_character_away(take, tmp_path):
+    names = rig.read(take.folder / "rig.npz", "mesh").names
+    read = weights.read(take.folder / "weights.parquet", names)
+    long = {name: np.resize(read.shapes[:, column], 200) for column, name in enumerate(names)}
+    columns = long | {"confidence": np.ones(200)}
+    still = np.tile([0.0, 0, 0, 1], (200, 1))
+    sizes = []
+    for scale in (1.0, 400.0):
+        columns[names[0]][120] = scale
+        path = tmp_path / "weights.parquet"
+        head = weights.head_columns(still, still)
+        weights.write(path, tmp_path / "w.csv", np.arange(200), columns | head, RATE)
+        words = take.bake_options()
+        words[words.index("--weights") + 1] = str(path)
+        bake_mesh.main(words)
+        render_preview.main(mesh_options(take))
+        right = pictures(take)[5][1][: preview.HEIGHT, -preview.HEIGHT :].astype(int)
+        sizes.append((np.ptp(right, axis=2) > 24).mean())
+    assert sizes[0] > 0.2
+    assert abs(sizes[1] - sizes[0]) < 0.02
+    bake_mesh.main(take.bake_options())
 
 
 def test_another_rig_than_the_baked_one_is_refused(take, tmp_path):
