@@ -84,9 +84,7 @@ def _compare(
     source = np.stack([actor[name] for name in names])
     target = np.stack([offsets[region, name].ravel() for name in names])
     if is_controls:
-        # degrees and centimetres stand side by side: measure each control by its own range
-        extent = np.abs(target).max(axis=0)
-        target = target / np.where(extent > 0, extent, 1.0)
+        target = contradictions.by_range(target)
     grams = source @ source.T, target @ target.T
     pairs = contradictions.exchanged_pairs(*grams)
     for i, j in pairs:

@@ -20,6 +20,21 @@ FARTHER = 1.5
 NEARER = 1.25
 
 
+def by_range(offsets: np.ndarray) -> np.ndarray:
+    """Measure each coordinate by its greatest offset: controls may be degrees or centimetres.
+
+    Parameters
+    ----------
+    offsets : (K, N) float array, differences from the neutral
+
+    Returns
+    -------
+    (K, N) float array in -1..1
+    """
+    extent = np.abs(offsets).max(axis=0)
+    return offsets / np.where(extent > 0, extent, 1.0)
+
+
 def _distances(products: np.ndarray) -> np.ndarray:
     """Return the (K + 1, K + 1) distances among the neutral (first) and shapes of a Gram matrix."""
     padded = np.pad(products, ((1, 0), (1, 0)))

@@ -61,3 +61,17 @@ def test_units_do_not_matter_and_few_shapes_are_no_trouble():
     for count in (1, 2):
         part = np.ix_(range(count), range(count))
         assert contradictions.exchanged_pairs(source[part], target[part]) == []
+
+
+def test_controls_in_degrees_and_shares_are_measured_by_their_ranges():
+    misled = 0
+    for seed in range(12):
+        rng, weights, actor, _ = key_shapes(seed)
+        units = np.array([40.0, 25.0, 1.0, 0.1, 1.0, 0.5])
+        poses = weights * (1 + 0.1 * rng.normal(size=weights.shape)) * units
+        source = gram(weights @ actor)
+        misled += bool(contradictions.exchanged_pairs(source, gram(poses)))
+        fair = gram(contradictions.by_range(poses))
+        assert contradictions.exchanged_pairs(source, fair) == []
+        assert contradictions.reversed_extremes(source, fair) == []
+    assert misled > 0
