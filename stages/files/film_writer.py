@@ -17,6 +17,8 @@ CLOCK_HZ = 90000
 VIDEO_OPTIONS = {"preset": "superfast", "crf": "22", "threads": "1"}
 CONTAINER_OPTIONS = {"fflags": "+bitexact", "movflags": "+faststart"}
 SOUND_BITS_PER_S = 128000
+# what AAC can hold; other sound is brought to the last
+SOUND_RATES = (8000, 11025, 12000, 16000, 22050, 24000, 32000, 44100, 48000)
 # sound is written this far ahead of the pictures, so that the muxer holds little back
 LEAD_S = 0.5
 
@@ -131,7 +133,8 @@ def _samples(path: str | Path, start_s: float) -> Iterator[tuple[int, str, int, 
             origin = _first_picture(path) + start_s
             stream = container.streams.audio[0]
             layout = "mono" if stream.channels == 1 else "stereo"
-            resampler = av.AudioResampler("fltp", layout, stream.rate)
+            rate = stream.rate if stream.rate in SOUND_RATES else SOUND_RATES[-1]
+            resampler = av.AudioResampler("fltp", layout, rate)
             for frame in container.decode(stream):
                 for part in resampler.resample(frame):
                     start = round((part.time - origin) * part.sample_rate)

@@ -144,6 +144,27 @@ def test_sound_stays_with_the_picture(tmp_path, late, start):
     np.testing.assert_allclose(beeps, flashes, atol=2e-3)
 
 
+def test_sound_that_aac_cannot_hold_is_converted(tmp_path):
+    source, target = tmp_path / "in.mov", tmp_path / "out.mp4"
+    with av.open(str(source), "w") as container:
+        video = container.add_stream("libx264", rate=30, options={"preset": "ultrafast"})
+        video.width, video.height, video.pix_fmt = 64, 48, "yuv420p"
+        audio = container.add_stream("pcm_s16le", rate=192000, layout="mono")
+        container.mux(video.encode(av.VideoFrame.from_ndarray(np.zeros((48, 64, 3), np.uint8))))
+        container.mux(video.encode())
+        times = np.arange(192000) / 192000
+        loud = np.where((times >= 0.5) & (times < 0.55), 20000 * np.sin(2e4 * times), 0)
+        frame = av.AudioFrame.from_ndarray(loud[None].astype(np.int16), "s16", "mono")
+        frame.sample_rate = 192000
+        container.mux(audio.encode(frame))
+        container.mux(audio.encode())
+    pictures = [(number / 30, np.zeros((48, 64, 3), np.uint8)) for number in range(30)]
+    film_writer.write(target, pictures, (64, 48), Fraction(30), source)
+    with av.open(str(target)) as container:
+        assert container.streams.audio[0].rate == HEARD
+    np.testing.assert_allclose(flashes_and_beeps(target)[1], [0.5], atol=2e-3)
+
+
 def test_irregular_times_and_silent_films_are_kept(tmp_path):
     source = sounding_film(tmp_path / "in.mp4", sound=False)
     pictures = np.random.default_rng(0).integers(0, 255, (5, 48, 64, 3), dtype=np.uint8)
