@@ -6,7 +6,7 @@ morphed into each other, and pixels and points are analysed together (CB02 secti
 """
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import cv2
 import numpy as np
@@ -43,10 +43,12 @@ def main(argv: Sequence[str]) -> None:
         raise ValueError("--videos, --labels and --shots: one of each for every film")
     point_contours = point_set.read(arguments.point_set)
     pictures, shapes, origins, names = [], [], [], None
+    corners: dict[str, int] = {}
     for shot, video, table in zip(arguments.shots, arguments.videos, arguments.labels, strict=True):
         labelled = labels.read(table, point_contours)
-        shown = film.frames_at(video, labelled)
+        shown = _pictures(video, table, labelled)
         for frame, drawn in labelled.items():
+            _check_corners(table, frame, drawn, corners)
             found, shape = _shape(table, frame, drawn, point_contours)
             names = found if names is None else names
             if found != names:
@@ -78,6 +80,29 @@ def main(argv: Sequence[str]) -> None:
         },
         [*arguments.videos, *arguments.labels, arguments.point_set],
     )
+
+
+def _pictures(video: str, table: str, frames: Iterable[int]) -> dict[int, np.ndarray]:
+    """Return the labelled frames' pictures."""
+    wanted, found, last = set(frames), {}, -1
+    for last, (_, picture) in enumerate(film.read_frames(video)):
+        if last in wanted:
+            found[last] = picture
+    if missing := sorted(wanted - set(found)):
+        message = f"frame {missing[0]} does not exist: {video} ends with frame {last}"
+        raise errors.InputError(table, f"{message}; correct the frame, or give the labelled film")
+    return found
+
+
+def _check_corners(
+    table: str, frame: int, drawn: dict[str, labels.Polyline], known: dict[str, int]
+) -> None:
+    """Refuse a contour with other corners than on the first labelled frame; `known` remembers."""
+    for name, line in drawn.items():
+        count = known.setdefault(name, len(line.corners))
+        if len(line.corners) != count:
+            message = f"frame {frame}: contour {name} has {len(line.corners)} corners"
+            raise errors.InputError(table, f"{message}, the first labelled frame has {count}")
 
 
 def _shape(

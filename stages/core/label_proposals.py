@@ -10,6 +10,7 @@ APART_S = 1.0
 LOST_NEED = 0.8
 UNUSUAL_NEED = 0.5
 LEAST_NEED = 0.05
+FAR = 10.0
 
 
 @dataclasses.dataclass(frozen=True)
@@ -58,7 +59,7 @@ def rank(tracked: Tracked, labelled: np.ndarray, count: int) -> list[int]:
     The next frame maximises `n_t (1 - exp(-a^2 / 2)) (1 - exp(-b^2 / 2))`, with `n_t` the need,
     `a` the time to the nearest such frame of its shot [s] and `b` the distance of shapes to the
     nearest such frame, in units of the median distance from the mean shape; the latter counts for
-    half, and not at all where no face was found.
+    half, and not at all where no face was found. A run of frames without a face is proposed once.
 
     Parameters
     ----------
@@ -79,6 +80,7 @@ def rank(tracked: Tracked, labelled: np.ndarray, count: int) -> list[int]:
         raise ValueError(f"{len(labelled)} labelled flags for {len(tracked.shot)} frames")
     shapes = _comparable(tracked.points)
     wanted = need(tracked)
+    runs = _lost_runs(tracked)
     apart = np.full(len(wanted), np.inf)
     unlike = np.full(len(wanted), np.inf)
     chosen: list[int] = []
@@ -89,13 +91,21 @@ def rank(tracked: Tracked, labelled: np.ndarray, count: int) -> list[int]:
             apart = np.minimum(apart, np.where(tracked.shot == tracked.shot[t], time, np.inf))
             if np.isfinite(shapes[t]).all():
                 unlike = np.minimum(unlike, np.sqrt(((shapes - shapes[t]) ** 2).sum(axis=1)))
-        new = 0.5 + 0.5 * (1 - np.exp(-(np.nan_to_num(unlike, nan=np.inf) ** 2) / 2))
+        new = 0.5 + 0.5 * (1 - np.exp(-(np.minimum(np.nan_to_num(unlike, nan=FAR), FAR) ** 2) / 2))
         worth = np.where(labelled, 0, wanted * (1 - np.exp(-(apart**2) / 2)) * new)
         best = int(worth.argmax())
         if len(chosen) == count or worth[best] < LEAST_NEED:
             return chosen
         chosen.append(best)
+        wanted[(runs == runs[best]) & (runs >= 0)] = 0
         fresh = [best]
+
+
+def _lost_runs(tracked: Tracked) -> np.ndarray:
+    """Return the number of the run of frames without a face that each is part of, (T,); else -1."""
+    lost = np.isnan(tracked.points).any(axis=(1, 2))
+    before = np.concatenate([[False], lost[:-1] & (tracked.shot[1:] == tracked.shot[:-1])])
+    return np.where(lost, np.cumsum(lost & ~before), -1)
 
 
 def _comparable(points: np.ndarray) -> np.ndarray:

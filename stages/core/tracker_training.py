@@ -29,7 +29,7 @@ FRACTIONS = (0.25, 0.5, 0.75)
 MORPH_LIMIT = 240
 LABEL_WEIGHT = 3
 STARTS = 2
-RIDGE = 0.5
+RIDGE = 4.0
 START_SPREAD = (2.0, 0.03, 0.03)
 START_GROUP = 0.5
 BENT = 8
@@ -37,6 +37,8 @@ BENT_GROUP = 1.5
 GROUP_LIMITS = (4.0, 0.3)
 LIGHT = (0.15, 0.08, 1.5)
 JUDGED_MORPHS = 60
+JUDGED_REPEATS = 4
+JUDGED_ERROR_PX = 0.8
 
 
 @dataclasses.dataclass(frozen=True)
@@ -175,30 +177,25 @@ def _judge(
     count = faces.labelled
     morphs = np.linspace(count, len(faces.images) - 1, JUDGED_MORPHS).astype(int)
     chosen = np.concatenate([np.arange(count), np.unique(morphs)])
-    described = np.array([_described(faces.images[m], faces.shapes[m], frame) for m in chosen])
-    mean, basis = confidence.span(described)
-    right = []
+    seen = np.array([described(faces.images[m], faces.shapes[m], frame) for m in chosen])
+    mean, basis = confidence.span(seen)
+    right, wrong, is_wrong = [], [], []
     for i in range(count):
-        apart = (faces.parents[chosen] != i).all(axis=1)
-        left_mean, left_basis = confidence.span(described[apart])
-        for _ in range(4):
-            image = face_variations.relit(faces.images[i], *LIGHT, rng)
-            shape = faces.shapes[i] + 0.6 * rng.normal(size=faces.shapes[i].shape)
-            seen = _described(image, shape, frame)
-            right.append(confidence.log_distance(left_mean, left_basis, seen))
-    wrong, is_wrong = [], []
-    for i in range(count):
-        for make in false_faces.KINDS:
-            for _ in range(4):
-                image, shape, bad = make(faces.images[i], faces.shapes[i], groups, rng)
-                seen = _described(image, shape, frame)
-                wrong.append(confidence.log_distance(mean, basis, seen))
+        own = (faces.images[i], faces.shapes[i])
+        left_out = confidence.span(seen[(faces.parents[chosen] != i).all(axis=1)])
+        for _ in range(JUDGED_REPEATS):
+            image = face_variations.relit(own[0], *LIGHT, rng)
+            shape = own[1] + JUDGED_ERROR_PX * rng.normal(size=own[1].shape)
+            right.append(confidence.log_distance(*left_out, described(image, shape, frame)))
+            for make in false_faces.KINDS:
+                image, shape, bad = make(*own, groups, rng)
+                wrong.append(confidence.log_distance(mean, basis, described(image, shape, frame)))
                 is_wrong.append(bad)
     return confidence.train(
         mean, basis, np.array(right), np.array(wrong), np.array(is_wrong), groups
     )
 
 
-def _described(image: np.ndarray, shape: np.ndarray, frame: face_frame.FaceFrame) -> np.ndarray:
+def described(image: np.ndarray, shape: np.ndarray, frame: face_frame.FaceFrame) -> np.ndarray:
     """Return the descriptors (P, F) of a face at given points."""
     return descent.describe(descent.look(image, frame, shape), shape)
