@@ -1,0 +1,60 @@
+"""Make the paper's figures on the example show, after its run: `python -m bench.figures`."""
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+
+import cv2
+
+from bench.figures import (
+    key_shape_figure,
+    lip_figures,
+    lip_trial,
+    own_figure,
+    portraits,
+    region_frames,
+    retarget_figure,
+)
+from stages import cli
+from stages.files import errors
+
+REGION = "mouth"
+TAKE, BASIS = "talk", "rom"
+
+
+def build_parser() -> argparse.ArgumentParser:
+    """Return the parser of the command line."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--show", required=True, type=Path, help="the example show, after a run")
+    parser.add_argument("--figures", required=True, type=Path, help="folder of the pictures")
+    return parser
+
+
+def main(argv: Sequence[str]) -> None:
+    """Make figures 4, 5, 6 and 8."""
+    cv2.setNumThreads(1)
+    arguments = build_parser().parse_args(argv)
+    show, folder = arguments.show, arguments.figures
+    _check_made(show)
+    take, basis = (region_frames.read(show, shot, REGION) for shot in (TAKE, BASIS))
+    own, borrowed = lip_trial.run(take, take), lip_trial.run(take, basis)
+    lip_figures.draw_least_squares(own, borrowed, folder / "figure_4.png")
+    lip_figures.draw_nonnegative(own, borrowed, folder / "figure_5.png")
+    key_shape_figure.draw(show, folder / "figure_6.png")
+    retarget_figure.draw(show, folder / "figure_8a.png")
+    own_figure.draw(show, folder / "figure_8b.png")
+
+
+def _check_made(show: Path) -> None:
+    """Refuse a show that has not been run."""
+    results = show / "results"
+    needed = [key_shape_figure.errors_path(show)]
+    needed += [results / "shots" / shot / "key_weights.parquet" for shot in (TAKE, BASIS)]
+    needed += [results / "takes" / TAKE / name / "mesh.json" for name in portraits.CHARACTERS]
+    for path in needed:
+        if not path.exists():
+            raise errors.InputError(path, "is missing: run the example show first, by `make run`")
+
+
+if __name__ == "__main__":
+    cli.run_stage(main)

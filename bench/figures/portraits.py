@@ -1,0 +1,139 @@
+"""Pictures of the actor and of the characters, side by side."""
+
+from pathlib import Path
+
+import numpy as np
+
+from bench.figures import look, region_frames
+from stages.core import head_transform, polygons, rasterize, region_features, shade
+from stages.files import basis, film, regions, rig
+
+SIDE = 480  # px
+COLUMNS = 6
+CHARACTERS = ("human", "radio", "drawing")
+
+
+def character_pictures(character: rig.Rig, positions: np.ndarray) -> list[np.ndarray]:
+    """Draw positions of a character from one camera that sees them all.
+
+    Parameters
+    ----------
+    character : rig.Rig
+    positions : (N, V, 3) float array [character's unit]
+
+    Returns
+    -------
+    list of (SIDE, SIDE, 3) uint8 arrays
+    """
+    axes = head_transform.face_axes(character.up_axis)
+    low, high = positions.min(axis=(0, 1)), positions.max(axis=(0, 1))
+    camera = rasterize.facing_camera(low, high, axes)
+    behind = rasterize.backdrop(SIDE)
+    triangles = polygons.triangulate(character.sizes, character.corners)
+    normals = polygons.face_normals(character.neutral, triangles)
+    sign = shade.outward(character.neutral, triangles, normals, axes[:, 2])
+    pictures = []
+    for shape in positions.astype(np.float32):
+        turned = sign * polygons.vertex_normals(shape, triangles) @ axes
+        light = shade.vertex_light(turned, character.colours)
+        pictures.append(rasterize.draw(shape, triangles, light, camera, behind))
+    return pictures
+
+
+def film_path(show: Path, shot: str) -> Path:
+    """Return a film of the example."""
+    return show / "data_example" / "films" / f"{shot}.mp4"
+
+
+def film_pictures(show: Path, shot: str, frames: list[int]) -> list[np.ndarray]:
+    """Return pictures of the example's films, whose rate is constant."""
+    found = film.frames_at(film_path(show, shot), frames)
+    return [found[frame] for frame in frames]
+
+
+def varied_frames(show: Path, shot: str, path: Path) -> list[int]:
+    """Return numbers of well tracked frames that differ much, in the order of time.
+
+    Parameters
+    ----------
+    show : Path
+    shot : str
+    path : Path
+        The shot's expression.
+
+    Returns
+    -------
+    list of int
+    """
+    performance = basis.read([path], [shot])
+    table_path = show / "config" / "regions.tsv"
+    table = regions.read(table_path)
+    parts, good = [], np.ones(len(performance.frame), bool)
+    for region in table:
+        chosen, weights = regions.select(table_path, table, region, performance.names)
+        good &= basis.region_confidence(performance, chosen) >= region_frames.GOOD
+        points = performance.points[:, chosen] - performance.neutral[chosen]
+        parts.append(region_features.stack(points, weights))
+    scaled = [part / np.sqrt(np.nanmean((part**2).sum(axis=1))) for part in parts]
+    rows = np.flatnonzero(good)
+    frame = performance.frame[rows]
+    picked = farthest(np.concatenate(scaled, axis=1)[rows], frame, COLUMNS)
+    return sorted(int(frame[row]) for row in picked)
+
+
+def farthest(features, frame, count):
+    """Pick rows one after another, each the farthest from zero and from all picked before.
+
+    Frames nearer in time than a third of an even spacing are not picked together.
+
+    Parameters
+    ----------
+    features : (T, D) float array
+    frame : (T,) int array, ascending
+    count : int
+
+    Returns
+    -------
+    list of int
+    """
+    apart = (frame[-1] - frame[0]) / (3 * count)
+    distance = np.linalg.norm(features, axis=1)
+    picked = []
+    for _ in range(count):
+        row = int(distance.argmax())
+        picked.append(row)
+        distance = np.minimum(distance, np.linalg.norm(features - features[row], axis=1))
+        distance[np.abs(frame - frame[row]) < apart] = -1.0
+    return picked
+
+
+def sheet(drawn, rows, names, frames, height):
+    """Place rows of pictures, with their names at the left and frame numbers above.
+
+    Parameters
+    ----------
+    drawn : figure.SubFigure
+    rows : list of lists of (H, W, 3) uint8 arrays
+    names : list of str
+        One of each row.
+    frames : list of int
+        One of each column.
+    height : float
+        Share of the height, from the top, that the rows take.
+    """
+    left, top, gap = 0.022, 0.025 * height, 0.003
+    wide = (1 - left - gap) / len(frames)
+    tall = (height - top) / len(rows)
+    for number, (pictures, name) in enumerate(zip(rows, names, strict=True)):
+        bottom = 1 - top - (number + 1) * tall
+        words = dict(look.TITLE, size=10, rotation=90, ha="center", va="center")
+        drawn.text(left / 2 + 0.001, bottom + tall / 2, name, **words)
+        for column, picture in enumerate(pictures):
+            place = (left + column * wide, bottom, wide - gap, tall * (1 - gap))
+            panel = drawn.add_axes(place)
+            panel.imshow(picture, interpolation="antialiased")
+            panel.set_axis_off()
+    for column, frame in enumerate(frames):
+        middle = left + (column + 0.5) * wide - gap / 2
+        words = {"ha": "center", "va": "center", "size": 9, "color": look.INK}
+        drawn.text(middle, 1 - top / 2, f"frame {frame}", **words)

@@ -1,0 +1,45 @@
+"""Figure 8 (a): frames of the talking take beside the characters that it drives."""
+
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+
+from bench.figures import look, portraits, region_frames
+from stages.files import exr, film, key_shapes, rig
+
+ACTOR, SHOT = "ada", "talk"
+WIDTH, TOP = 12.0, 0.25  # inches
+
+
+def draw(show: Path, path: Path) -> None:
+    """Draw the film's frames and, below, the baked frames of every character."""
+    expression = region_frames.expression_path(show, SHOT)
+    frames = portraits.varied_frames(show, SHOT, expression)
+    rows = [portraits.film_pictures(show, SHOT, frames)]
+    rows += [_baked(show, name, frames) for name in portraits.CHARACTERS]
+    shapes = key_shapes.read(show / "results" / "actors" / ACTOR / "key_shapes.parquet")
+    counts = Counter(shape.region for shape in shapes)
+    words = ", ".join(f"{count} for the {region}" for region, count in counts.items())
+    length = film.promised_count(portraits.film_path(show, SHOT))
+    caption = (
+        f"Figure 8 (a). Frames of the take '{SHOT}' ({length} frames) and what it makes of three "
+        f"characters. The key shapes come from the range-of-motion take: {words}. Each region is "
+        "solved and moved on its own; the head's motion in the plane moves the whole. The "
+        "frames are chosen to differ."
+    )
+    height = len(rows) * WIDTH / len(frames) + TOP
+    whole, drawn = look.page(WIDTH, height, caption)
+    portraits.sheet(drawn, rows, ["film", *portraits.CHARACTERS], frames, 1.0)
+    look.save(whole, path)
+
+
+def _baked(show: Path, name: str, frames: list[int]) -> list[np.ndarray]:
+    """Return pictures of a character's baked frames at the times of the film's frames."""
+    folder = show / "results" / "takes" / SHOT / name
+    description = exr.read_json(folder / "mesh.json")
+    baked = exr.Reader(folder / "mesh.exr", description)
+    character = rig.read(show / "results" / "cast" / ACTOR / name / "rig.npz", "mesh")
+    rate = film.nominal_rate(portraits.film_path(show, SHOT))
+    rows = [baked.nearest(float(frame / rate)) for frame in frames]
+    return portraits.character_pictures(character, np.stack([baked.frame(row) for row in rows]))
