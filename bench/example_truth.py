@@ -30,7 +30,8 @@ def _line(show: Path, shot: str, truth: dict) -> str:
     path = show / "results" / "shots" / shot / "tracked.parquet"
     tracked = series.read(path, "tracked")
     points = series.stack(tracked, path, names)
-    unit = np.linalg.norm(_centre(truth, names, "eye_left") - _centre(truth, names, "eye_right"), axis=1)
+    between = _centre(truth, names, "eye_left") - _centre(truth, names, "eye_right")
+    unit = np.linalg.norm(between, axis=1)
     error = 100 * np.linalg.norm(points - truth["landmarks"], axis=2) / np.median(unit)
     mouth = [index for index, name in enumerate(names) if name.startswith(MOUTH)]
     upper, lower = (names.index(name) for name in OPENING)
@@ -40,10 +41,11 @@ def _line(show: Path, shot: str, truth: dict) -> str:
     correlation = np.corrcoef(truth["opening_px"][known], opening[known])[0, 1]
     confidence = tracked.columns["confidence"]
     mean = np.nanmean(error, axis=1)
+    roll = _roll_error(show, shot, truth)
     false_good = int(((confidence > GOOD) & (mean > 10)).sum())
     return (
         f"{shot:6} {np.nanmean(error):6.2f}  {np.nanmean(error[:, mouth]):6.2f}"
-        f"  {np.nanmax(mean):6.2f}  {correlation:.4f} {slope:6.3f}  {_roll_error(show, shot, truth):6.3f}"
+        f"  {np.nanmax(mean):6.2f}  {correlation:.4f} {slope:6.3f}  {roll:6.3f}"
         f"  {int((~known).sum()):6d}  {false_good:5d}"
     )
 

@@ -18,7 +18,6 @@ from data_example.generator import (
     params,
     render,
     sculpting,
-    selection,
     shots,
     sound,
     texture,
@@ -81,25 +80,6 @@ def make_labels(folder):
     (folder / "point_set.tsv").write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-def make_characters(folder):
-    """Write the characters, and the tables of the settings that name them and their locks."""
-    rows = sculpting.write_all(folder / "characters")
-    tables = folder / "proposed_config"
-    tables.mkdir(parents=True, exist_ok=True)
-    columns = ("unit", "up_axis", "pivot", "face_unit")
-    lines = ["\t".join(("character", "folder", "neutral", "masks", *columns))]
-    for name, neutral, row in rows:
-        cells = [name, f"data_example/characters/{name}", neutral, "masks.tsv"]
-        lines.append("\t".join(cells + [row[column] for column in columns]))
-    (tables / "characters.tsv").write_text("\n".join(lines) + "\n", encoding="utf-8")
-    lines = ["actor\tregion\tshot\tframe\tstate"]
-    for region, frames in selection.LOCKED.items():
-        lines += [f"ada\t{region}\t{selection.SHOT}\t{frame}\tlocked" for frame in frames]
-    (tables / "key_shapes.tsv").write_text("\n".join(lines) + "\n", encoding="utf-8")
-    lines = ["actor\tcharacter\tshots", *(f"ada\t{name}\t" for name, _, _ in rows)]
-    (tables / "cast.tsv").write_text("\n".join(lines) + "\n", encoding="utf-8")
-
-
 def main(argv=None):
     """Make the pieces that were asked for."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -112,7 +92,7 @@ def main(argv=None):
     if arguments.only in (None, "labels"):
         make_labels(arguments.folder)
     if arguments.only in (None, "characters"):
-        make_characters(arguments.folder)
+        sculpting.write_all(arguments.folder / "characters")
     if arguments.only in (None, "films"):
         make_films(arguments.folder, arguments.shots)
 

@@ -23,6 +23,8 @@ def run_stage(main: Callable[[Sequence[str]], None]) -> None:
 
 def _one_line(error: Exception) -> str:
     """Return the error's message on one line, with the file first."""
+    if isinstance(error, FileNotFoundError):
+        return f"{error.filename or error}: no such file; is the path right, is it made already?"
     if isinstance(error, OSError) and error.filename is not None:
         return f"{error.filename}: {error.strerror}"
     return " ".join(str(error).split())

@@ -172,7 +172,7 @@ def test_characters_are_made_again_byte_by_byte(rewritten):
 
 
 def test_locked_frames_are_those_that_are_sculpted():
-    text = (FOLDER / "proposed_config" / "key_shapes.tsv").read_text(encoding="utf-8")
+    text = (FOLDER.parent / "config" / "key_shapes.tsv").read_text(encoding="utf-8")
     locks = [tuple(row.split("\t")) for row in text.splitlines()[1:]]
     assert [(r, int(f)) for _, r, _, f, _ in locks] == [
         (region, frame) for region, frames in selection.LOCKED.items() for frame in frames

@@ -22,7 +22,13 @@ class Show:
 
     def snakemake(self, *arguments, cores=2):
         """Run the workflow; return the finished process."""
-        command = [sys.executable, "-m", "snakemake", "--snakefile", str(self.checkout / "Snakefile")]
+        command = [
+            sys.executable,
+            "-m",
+            "snakemake",
+            "--snakefile",
+            str(self.checkout / "Snakefile"),
+        ]
         command += ["--directory", str(self.folder), "--cores", str(cores), *arguments]
         environment = os.environ | {"PYTHONPATH": str(self.checkout)}
         return subprocess.run(command, capture_output=True, text=True, env=environment, check=False)

@@ -111,9 +111,9 @@ def test_a_lost_film_fails_its_shot_and_leaves_the_rest(show):
     shutil.rmtree(show.folder / "results/takes")
     run = show.snakemake()
     assert run.returncode == 1
-    assert "error: footage/b.mp4: no such film" in (
-        show.folder / "logs/track_video/b.log"
-    ).read_text()
+    assert (
+        "error: footage/b.mp4: no such film" in (show.folder / "logs/track_video/b.log").read_text()
+    )
     assert (show.folder / "results/takes/a/plate/preview.mp4").is_file()
     assert not (show.folder / "results/shots/b/tracked.parquet").exists()
     assert "no such film" in (show.folder / "results/report/index.html").read_text()

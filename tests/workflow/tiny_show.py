@@ -110,7 +110,8 @@ def write_character(folder):
     rng = np.random.default_rng(2)
     grid = np.stack(np.meshgrid(np.arange(5.0), np.arange(6.0), indexing="ij"), -1).reshape(-1, 2)
     neutral = np.concatenate([grid, 0.1 * rng.normal(size=(30, 1))], axis=1)
-    corners = [(6 * i + j, 6 * i + j + 6, 6 * i + j + 7, 6 * i + j + 1) for i in range(4) for j in range(5)]
+    first = [6 * i + j for i in range(4) for j in range(5)]
+    corners = [(v, v + 6, v + 7, v + 1) for v in first]
 
     def write_mesh(path, vertices):
         lines = ["v {:.5f} {:.5f} {:.5f}".format(*vertex) for vertex in vertices]
@@ -138,9 +139,15 @@ def build(folder):
     write_character(folder / "plate")
     config = folder / "config"
     tables = {
-        "shots": [("shot", "session", "video", "labels", "basis")]
-        + [("a", "s1", "footage/a.mp4", "footage/a.csv", "yes"), ("b", "s1", "footage/b.mp4", "", "")],
-        "sessions": [("session", "actor", "neutral_shot", "neutral_frame"), ("s1", "eve", "a", "0")],
+        "shots": [
+            ("shot", "session", "video", "labels", "basis"),
+            ("a", "s1", "footage/a.mp4", "footage/a.csv", "yes"),
+            ("b", "s1", "footage/b.mp4", "", ""),
+        ],
+        "sessions": [
+            ("session", "actor", "neutral_shot", "neutral_frame"),
+            ("s1", "eve", "a", "0"),
+        ],
         "regions": [("region", "point", "weight"), *REGIONS],
         "region_settings": [("region", "count"), *((r, len(f)) for r, f in LOCKS.items())],
         "key_shapes": [("actor", "region", "shot", "frame", "state")]
