@@ -104,12 +104,12 @@ def train(
     starts: np.ndarray,
     frame: FaceFrame,
     groups: Sequence[np.ndarray],
-    ridge: float,
+    ridges: Sequence[float],
 ) -> tuple[Descent, np.ndarray]:
     """Train the cascade on perturbed starts.
 
     Each stage minimises `sum_n |x*_n - x_n - W' f_n - b|^2 + r |W|^2` for every group, with `r`
-    the ridge times the mean squared length of a descriptor. The next stage starts from
+    the stage's ridge times the mean squared length of a descriptor. The next stage starts from
     predictions that leave all pictures of the same face out, which are as wrong as on new film.
 
     Parameters
@@ -120,7 +120,7 @@ def train(
     starts : (N, P, 2) float array [px of the picture]
     frame : the face frame
     groups : R int arrays that hold each of the P points once
-    ridge : strength, without unit
+    ridges : strength of each stage, without unit
 
     Returns
     -------
@@ -154,7 +154,8 @@ def train(
             ]
         )
         fitted = [
-            _fit(described[:, group], (goal - local)[:, group], blocks, ridge) for group in groups
+            _fit(described[:, group], (goal - local)[:, group], blocks, ridges[stage])
+            for group in groups
         ]
         for group, (_, _, left_out) in zip(groups, fitted, strict=True):
             local[:, group] += left_out

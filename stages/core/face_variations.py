@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from stages.core import similarity
+from stages.core import similarity, warp
 from stages.core.face_frame import FaceFrame
 
 
@@ -70,6 +70,18 @@ def stretched(
         factors = np.exp(stretch * rng.normal(size=2))
         points[group] = middle + factors * (shape[group] - middle) + shift * rng.normal(size=2)
     return points
+
+
+def bent(
+    image: np.ndarray,
+    shape: np.ndarray,
+    groups: Sequence[np.ndarray],
+    spread: np.ndarray,
+    rng: np.random.Generator,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return a labelled face (H, W, 3) bent to a stretched shape (P, 2) [px], and that shape."""
+    goal = stretched(shape, groups, spread, rng)
+    return warp.bend(image, shape, goal), goal
 
 
 def starts(

@@ -29,7 +29,7 @@ FRACTIONS = (0.25, 0.5, 0.75)
 MORPH_LIMIT = 240
 LABEL_WEIGHT = 3
 STARTS = 2
-RIDGE = 4.0
+RIDGES = (10.0, 10.0, 4.0, 2.0)
 START_SPREAD = (2.0, 0.03, 0.03)
 START_GROUP = 0.5
 BENT = 8
@@ -73,7 +73,8 @@ def train(
     pictures : N pictures, (H, W, 3) uint8 arrays, RGB
     shapes : (N, P, 2) float array [px], their labelled points
     groups : int arrays that hold each point once
-    method : `eigen_points` as published, or `eigen_points_descent`
+    method : `eigen_points` as published, or `eigen_points_descent`, which refines them and adds
+        faces bent to new shapes to the morphs
     seed : of the perturbations
 
     Raises
@@ -89,11 +90,14 @@ def train(
         raise ValueError(f"groups do not hold each of {shapes.shape[1]} points once")
     rng = np.random.default_rng(seed)
     frame = face_frame.around(similarity.mean_shape(shapes, RADIUS_PX), MARGIN_PX)
-    faces = _faces(pictures, shapes, frame, groups, rng)
-    eigen = eigen_points.train(faces.images, faces.shapes, frame, COMPONENTS)
+    faces = _faces(pictures, shapes, frame, rng)
     cascade = descent.Descent((), ())
+    images, varied = faces.images, faces.shapes
     if method == "eigen_points_descent":
-        cascade = _cascade(faces, frame, groups, rng)
+        spread = face_variations.group_spread(_upright(faces, frame), groups, GROUP_LIMITS)
+        images, varied = _bent(faces, groups, spread, rng)
+        cascade = _cascade(images, varied, faces.labelled, frame, groups, spread, rng)
+    eigen = eigen_points.train(images, varied, frame, COMPONENTS)
     judge = _judge(faces, frame, groups, rng)
     scales = np.array([np.sqrt(np.linalg.det(frame.pose(s)[:, :2])) for s in shapes])
     fronts = np.array(
@@ -107,7 +111,6 @@ def _faces(
     pictures: Sequence[np.ndarray],
     shapes: np.ndarray,
     frame: face_frame.FaceFrame,
-    groups: Sequence[np.ndarray],
     rng: np.random.Generator,
 ) -> Faces:
     """Pre-warp the labelled frames and morph between them."""
@@ -127,44 +130,57 @@ def _faces(
     )
     morphs, bent, parents = morph.enlarge(images, local, FRACTIONS, MORPH_LIMIT, rng)
     own = np.arange(len(shapes))
-    again = np.repeat(own, BENT)
-    spread = face_variations.group_spread(_upright(local, frame), groups, GROUP_LIMITS)
-    goals = [face_variations.stretched(local[i], groups, BENT_GROUP * spread, rng) for i in again]
-    varied = [warp.bend(images[i], local[i], goal) for i, goal in zip(again, goals, strict=True)]
     return Faces(
-        np.concatenate([images, morphs, np.array(varied)])
-        if BENT
-        else np.concatenate([images, morphs]),
-        np.concatenate([local, bent, np.array(goals)]) if BENT else np.concatenate([local, bent]),
-        np.concatenate([np.stack([own, own], axis=1), parents, np.stack([again, again], axis=1)]),
+        np.concatenate([images, morphs]),
+        np.concatenate([local, bent]),
+        np.concatenate([np.stack([own, own], axis=1), parents]),
         len(shapes),
     )
 
 
+def _upright(faces: Faces, frame: face_frame.FaceFrame) -> np.ndarray:
+    """Return the labelled shapes (N, P, 2) aligned to the mean shape."""
+    return np.array(
+        [
+            similarity.apply(similarity.fit_similarity(shape, frame.points), shape)
+            for shape in faces.shapes[: faces.labelled]
+        ]
+    )
+
+
+def _bent(
+    faces: Faces, groups: Sequence[np.ndarray], spread: np.ndarray, rng: np.random.Generator
+) -> tuple[np.ndarray, np.ndarray]:
+    """Add labelled faces bent to shapes that nobody labelled; return all images and shapes."""
+    labelled = list(zip(faces.images, faces.shapes, strict=True))[: faces.labelled]
+    bent = [
+        face_variations.bent(image, shape, groups, BENT_GROUP * spread, rng)
+        for image, shape in labelled
+        for _ in range(BENT)
+    ]
+    images = np.array([*faces.images, *(image for image, _ in bent)])
+    return images, np.array([*faces.shapes, *(shape for _, shape in bent)])
+
+
 def _cascade(
-    faces: Faces,
+    images: np.ndarray,
+    shapes: np.ndarray,
+    labelled: int,
     frame: face_frame.FaceFrame,
     groups: Sequence[np.ndarray],
+    spread: np.ndarray,
     rng: np.random.Generator,
 ) -> descent.Descent:
     """Train the refinement from perturbed starts under changed light."""
-    repeats = np.full(len(faces.images), STARTS)
-    repeats[: faces.labelled] *= LABEL_WEIGHT
+    repeats = np.full(len(images), STARTS)
+    repeats[:labelled] *= LABEL_WEIGHT
     sources = np.repeat(np.arange(len(repeats)), repeats)
-    images = np.array([face_variations.relit(faces.images[m], *LIGHT, rng) for m in sources])
-    spread = START_GROUP * face_variations.group_spread(
-        _upright(faces.shapes[: faces.labelled], frame), groups, GROUP_LIMITS
+    lit = np.array([face_variations.relit(images[m], *LIGHT, rng) for m in sources])
+    starts = face_variations.starts(
+        shapes, sources, frame, groups, START_SPREAD, START_GROUP * spread, rng
     )
-    starts = face_variations.starts(faces.shapes, sources, frame, groups, START_SPREAD, spread, rng)
-    cascade, _ = descent.train(images, sources, faces.shapes[sources], starts, frame, groups, RIDGE)
+    cascade, _ = descent.train(lit, sources, shapes[sources], starts, frame, groups, RIDGES)
     return cascade
-
-
-def _upright(shapes: np.ndarray, frame: face_frame.FaceFrame) -> np.ndarray:
-    """Return shapes (N, P, 2) aligned to the mean shape."""
-    return np.array(
-        [similarity.apply(similarity.fit_similarity(s, frame.points), s) for s in shapes]
-    )
 
 
 def _judge(
