@@ -9,6 +9,7 @@ configfile: "config/config.yaml"
 
 
 include: "workflow/rules/common.smk"
+include: "workflow/rules/inputs.smk"
 include: "workflow/rules/capture.smk"
 include: "workflow/rules/align.smk"
 include: "workflow/rules/shapes.smk"

@@ -4,20 +4,6 @@ Needs performance.parquet. Makes head_motion.parquet and expression.parquet of e
 """
 
 
-def neutral_of(wildcards):
-    """Return the points of the shot that shows the session's neutral."""
-    return f"results/shots/{session_of(wildcards.shot)['neutral_shot']}/performance.parquet"
-
-
-def session_cell(column):
-    """Return a function that gives a cell of the shot's session."""
-
-    def cell(wildcards):
-        return session_of(wildcards.shot)[column]
-
-    return cell
-
-
 rule align_head:
     input:
         performance="results/shots/{shot}/performance.parquet",

@@ -6,51 +6,6 @@ the mesh (mesh.exr, mesh.json, mesh.pc2, mesh.glb) or the curves of named contro
 """
 
 
-def character_cell(column):
-    """Return a function that gives a cell of the character's row."""
-
-    def cell(wildcards):
-        return row_of(SHOW["characters"], "character", wildcards.character)[column]
-
-    return cell
-
-
-def character_path(column):
-    """Return a function that gives the path of a file in the character's folder."""
-
-    def path(wildcards):
-        row = row_of(SHOW["characters"], "character", wildcards.character)
-        return str(Path(row["folder"], row[column]))
-
-    return path
-
-
-def character_source(column):
-    """Return a function that gives a file of the character's folder if it exists."""
-
-    def source(wildcards):
-        return present([character_path(column)(wildcards)])
-
-    return source
-
-
-def sculpt_folder(wildcards):
-    """Return the folder of a character's sculpts."""
-    row = row_of(SHOW["characters"], "character", wildcards.character)
-    return str(Path(row["folder"], "sculpts"))
-
-
-def sculpts(wildcards):
-    """Return the sculpts of a character, sorted: editing, adding or removing one is noticed."""
-    return sculpts_of(wildcards.character)
-
-
-def rig_of(wildcards):
-    """Return the rig of a take's actor and character."""
-    actor = session_of(wildcards.shot)["actor"]
-    return f"results/cast/{actor}/{wildcards.character}/rig.npz"
-
-
 rule check_sculpts:
     input:
         character_source("neutral"),

@@ -5,52 +5,6 @@ tracked.parquet (at the film's own times) and performance.parquet (at a constant
 """
 
 
-def label_proposals():
-    """Return the proposals of every session."""
-    sessions = cells(SHOW["sessions"], "session")
-    return expand("results/sessions/{session}/label_proposals.tsv", session=sessions)
-
-
-def labelled(column):
-    """Return a function that lists a column of a session's labelled shots."""
-
-    def values(wildcards):
-        rows = rows_of(SHOW["shots"], "session", wildcards.session)
-        return [row[column] for row in rows if row["labels"]]
-
-    return values
-
-
-def training_sources(wildcards):
-    """Return the films and label tables of a session that exist."""
-    return present(labelled("video")(wildcards) + labelled("labels")(wildcards))
-
-
-def film_path(wildcards):
-    """Return the film of a shot."""
-    return row_of(SHOW["shots"], "shot", wildcards.shot)["video"]
-
-
-def film(wildcards):
-    """Return the film of a shot if it exists."""
-    return present([film_path(wildcards)])
-
-
-def session_shots(wildcards):
-    """Return the names of a session's shots."""
-    return [row["shot"] for row in rows_of(SHOW["shots"], "session", wildcards.session)]
-
-
-def session_tracked(wildcards):
-    """Return the tracked points of a session's shots."""
-    return expand("results/shots/{shot}/tracked.parquet", shot=session_shots(wildcards))
-
-
-def tracker_of(wildcards):
-    """Return the tracker of a shot's session."""
-    return f"results/sessions/{session_of(wildcards.shot)['session']}/tracker.npz"
-
-
 rule train_tracker:
     input:
         training_sources,

@@ -1,6 +1,5 @@
 """Tables, their validation, wildcards and input functions; no rules."""
 
-import os
 import shlex
 import sys
 from pathlib import Path
@@ -11,7 +10,7 @@ import yaml
 from stages.files import errors, regions, show, source_code
 
 # the stages run with the Python that runs Snakemake, wherever that was started
-os.environ["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+shell.prefix(f"export PATH={shlex.quote(str(Path(sys.executable).parent))}:$PATH; ")
 
 SCHEMAS = Path(workflow.basedir) / "workflow" / "schemas"
 NAME = "[A-Za-z0-9][A-Za-z0-9_-]*"

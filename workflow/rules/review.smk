@@ -5,11 +5,6 @@ curves of named controls, and the run's report.
 """
 
 
-def takes():
-    """Return what shows that a take is done."""
-    return [f"results/takes/{shot}/{character}/preview.mp4" for shot, character in cast_takes()]
-
-
 rule render_preview:
     input:
         film,
@@ -92,17 +87,3 @@ rule render_controls:
         " --character {wildcards.character:q}"
         " --preview {output.preview:q}"
         " 2> {log:q}"
-
-
-def report_command():
-    """Return the command that writes the run's report from what exists."""
-    shots = []
-    for row in SHOW["shots"]:
-        session = session_of(row.cells["shot"])
-        shots.append(f"{session['actor']}/{session['session']}/{row.cells['shot']}")
-    played = [f"{shot}/{character}" for shot, character in cast_takes()]
-    return shlex.join(
-        ["python", "-m", "stages.write_report", "--results", "results", "--logs", "logs"]
-        + ["--shots", *shots, "--takes", *played, "--template", template("report.html")]
-        + ["--report", "results/report/index.html"]
-    )

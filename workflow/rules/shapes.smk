@@ -5,57 +5,6 @@ key_shape_errors.parquet and the brief of each actor, and the state of each char
 """
 
 
-def briefs():
-    """Return the brief of every actor."""
-    actors = sorted(set(cells(SHOW["sessions"], "actor")))
-    return expand("results/actors/{actor}/brief/index.html", actor=actors)
-
-
-def basis_shots(wildcards):
-    """Return the names of an actor's basis shots."""
-    return [row["shot"] for row in shots_of(wildcards.actor, basis=["yes"])]
-
-
-def basis_expressions(wildcards):
-    """Return the expressions of an actor's basis shots."""
-    return expand("results/shots/{shot}/expression.parquet", shot=basis_shots(wildcards))
-
-
-def basis_films(wildcards):
-    """Return the films of an actor's basis shots that exist."""
-    return present([row["video"] for row in shots_of(wildcards.actor, basis=["yes"])])
-
-
-def basis_film_paths(wildcards):
-    """Return the films of an actor's basis shots."""
-    return [row["video"] for row in shots_of(wildcards.actor, basis=["yes"])]
-
-
-def basis_tracked(wildcards):
-    """Return the tracked points of an actor's basis shots."""
-    return expand("results/shots/{shot}/tracked.parquet", shot=basis_shots(wildcards))
-
-
-def lock_rows(wildcards):
-    """Return an actor's rows of key_shapes.tsv: only they change the actor's key shapes."""
-    rows = rows_of(SHOW["key_shapes"], "actor", wildcards.actor)
-    return ["{region}:{shot}:{frame}:{state}".format(**row) for row in rows]
-
-
-def played_characters(wildcards):
-    """Return the names of the characters that an actor plays."""
-    return [row["character"] for row in rows_of(SHOW["cast"], "actor", wildcards.actor)]
-
-
-def sculpt_states(wildcards):
-    """Return the states of the sculpts of all characters that an actor plays."""
-    return expand(
-        "results/cast/{actor}/{character}/sculpts.parquet",
-        actor=wildcards.actor,
-        character=played_characters(wildcards),
-    )
-
-
 rule fit_pca:
     input:
         expressions=basis_expressions,

@@ -4,11 +4,6 @@ Needs expression.parquet of the shot and key_shapes.parquet of its actor. Makes 
 """
 
 
-def key_shapes_of_shot(wildcards):
-    """Return the key shapes of the shot's actor."""
-    return f"results/actors/{session_of(wildcards.shot)['actor']}/key_shapes.parquet"
-
-
 rule solve_weights:
     input:
         expression="results/shots/{shot}/expression.parquet",
