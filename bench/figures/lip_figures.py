@@ -123,7 +123,8 @@ def _played(trial, name, frames, domain):
     cells = []
     for i in frames:
         strong = i == worst and domain == "target"
-        words = f"frame {trial.numbers[i]}: {100 * errors[i]:.2f} %" + strong * ", worst"
+        place = f"worst ({trial.numbers[i]})" if strong else f"frame {trial.numbers[i]}"
+        words = f"{place}: {100 * errors[i]:.2f} %"
         cells.append(Cell(trial.frames[i], points[i], COLOURS[name], words, strong))
     return cells
 

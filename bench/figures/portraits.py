@@ -74,8 +74,9 @@ def varied_frames(show: Path, shot: str, path: Path) -> list[int]:
         good &= basis.region_confidence(performance, chosen) >= region_frames.GOOD
         points = performance.points[:, chosen] - performance.neutral[chosen]
         parts.append(region_features.stack(points, weights))
-    scaled = [part / np.sqrt(np.nanmean((part**2).sum(axis=1))) for part in parts]
     rows = np.flatnonzero(good)
+    # every region's farthest frame counts as much: blinks are rare but large
+    scaled = [part / np.linalg.norm(part[rows], axis=1).max() for part in parts]
     frame = performance.frame[rows]
     picked = farthest(np.concatenate(scaled, axis=1)[rows], frame, COLUMNS)
     return sorted(int(frame[row]) for row in picked)
