@@ -7,7 +7,7 @@ import numpy as np
 from stages.core import similarity
 
 SHIFT = (0.15, 0.8)
-GROUP_SHIFT = (0.12, 0.4)
+GROUP_SHIFT = (0.07, 0.4)
 
 
 def astray(
