@@ -31,7 +31,10 @@ class Show:
         ]
         command += ["--directory", str(self.folder), "--cores", str(cores), *arguments]
         environment = os.environ | {"PYTHONPATH": str(self.checkout)}
-        return subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
+        # `-m` puts the working folder first on the path: it must hold no other `stages`
+        return subprocess.run(
+            command, cwd=self.folder, capture_output=True, text=True, env=environment, check=False
+        )
 
     def would_run(self):
         """Return how many jobs of each rule a run would make."""
