@@ -6,7 +6,7 @@ import numpy as np
 
 from stages.core import similarity
 
-APART_S = 1.0
+APART_S = 0.5
 LOST_NEED = 0.8
 UNUSUAL_NEED = 0.5
 LEAST_NEED = 0.05
@@ -57,7 +57,7 @@ def rank(tracked: Tracked, labelled: np.ndarray, count: int) -> list[int]:
     """Choose frames greedily by need, weighed down near labelled and already chosen frames.
 
     The next frame maximises `n_t (1 - exp(-a^2 / 2)) (1 - exp(-b^2 / 2))`, with `n_t` the need,
-    `a` the time to the nearest such frame of its shot [s] and `b` the distance of shapes to the
+    `a` the time to the nearest such frame of its shot [0.5 s] and `b` the distance of shapes to the
     nearest such frame, in units of the median distance from the mean shape; the latter counts for
     half, and not at all where no face was found. A run of frames without a face is proposed once.
 
