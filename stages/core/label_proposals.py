@@ -56,10 +56,10 @@ def need(tracked: Tracked) -> np.ndarray:
 def rank(tracked: Tracked, labelled: np.ndarray, count: int) -> list[int]:
     """Choose frames greedily by need, weighed down near labelled and already chosen frames.
 
-    The next frame maximises `n_t (1 - exp(-a^2 / 2)) (1 - exp(-b^2 / 2))`, with `n_t` the need,
+    The next frame maximises `n_t (1 - exp(-a^2 / 2)) (1 - exp(-b^2 / 2) / 2)`, with `n_t` the need,
     `a` the time to the nearest such frame of its shot [0.5 s] and `b` the distance of shapes to the
-    nearest such frame, in units of the median distance from the mean shape; the latter counts for
-    half, and not at all where no face was found. A run of frames without a face is proposed once.
+    nearest such frame, in units of the median distance from the mean shape; infinite where no face
+    was found. A run of frames without a face is proposed once.
 
     Parameters
     ----------
@@ -91,7 +91,8 @@ def rank(tracked: Tracked, labelled: np.ndarray, count: int) -> list[int]:
             apart = np.minimum(apart, np.where(tracked.shot == tracked.shot[t], time, np.inf))
             if np.isfinite(shapes[t]).all():
                 unlike = np.minimum(unlike, np.sqrt(((shapes - shapes[t]) ** 2).sum(axis=1)))
-        new = 0.5 + 0.5 * (1 - np.exp(-(np.minimum(np.nan_to_num(unlike, nan=FAR), FAR) ** 2) / 2))
+        distance = np.minimum(np.nan_to_num(unlike, nan=FAR), FAR)
+        new = 1 - np.exp(-(distance**2) / 2) / 2
         worth = np.where(labelled, 0, wanted * (1 - np.exp(-(apart**2) / 2)) * new)
         best = int(worth.argmax())
         if len(chosen) == count or worth[best] < LEAST_NEED:
