@@ -112,11 +112,11 @@ def _strip(confidence: np.ndarray) -> str:
 
 
 def _leak(expression: series.Series, motion: series.Series) -> str:
-    """Return the head leak, with the height of all points as the opening."""
-    heights = [values for name, values in expression.columns.items() if name.endswith(".y")]
-    opening = np.ptp(np.stack(heights), axis=0)
+    """Return the head leak, with the face's strongest motion as the opening of the jaw."""
+    points = np.stack([v for n, v in expression.columns.items() if n.endswith((".x", ".y"))], 1)
     parameters = np.stack([motion.columns[name] for name in MOTION], axis=1)
-    leak = head_leak.head_leak(parameters, opening)
+    opening = head_leak.strongest_motion(points)
+    leak = head_leak.head_leak(parameters, opening, round(float(motion.rate)))
     return "-" if np.isnan(leak) else f"{leak:.2f}"
 
 
