@@ -16,10 +16,8 @@ PACKAGE_FOLDER = Path(__file__).parents[1]
 
 
 def _source_of(module: str) -> Path | None:
-    """Return the file of a module of the package; None where the name is no module."""
+    """Return the file of a module; None where the name is none, or a package (which is empty)."""
     path = PACKAGE_FOLDER.joinpath(*module.split(".")[1:])
-    if (path / "__init__.py").is_file():
-        return path / "__init__.py"
     return path.with_suffix(".py") if path.with_suffix(".py").is_file() else None
 
 
@@ -30,7 +28,7 @@ def parsed(module: str) -> tuple[str, tuple[str, ...]]:
     imported = []
     for node in tree.body:
         if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == PACKAGE:
-            imported += [f"{node.module}.{alias.name}" for alias in node.names]
+            imported += [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
         elif isinstance(node, ast.Import):
             imported += [a.name for a in node.names if a.name.split(".")[0] == PACKAGE]
     for node in ast.walk(tree):
