@@ -22,9 +22,11 @@ from stages.core import (
 )
 from stages.files import basis, errors, key_shapes, lock_table, model, region_settings, regions
 
-FOLDS = 4
-COUNTS = (2, 4, 6, 8, 10, 12, 16, 20, 24)
-CURVE_FRAMES = 320
+FOLDS = 3
+COUNTS = (2, 4, 8, 12, 16, 24)
+CURVE_FRAMES = 240
+# measured at one count only where no region asks for it
+SLOW = "swap_refinement"
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -73,6 +75,7 @@ def main(argv: Sequence[str]) -> None:
             _eligible(arguments, region, locks, confidence),
             tuple(locks.get(region, {}).get("locked", ())),
             arguments.seed,
+            settings[region].sigma,
         )
         rows = _measure(candidates, frames, settings[region])
         curves += [{"region": region} | row for row in rows]
@@ -123,7 +126,8 @@ def _measure(
     usable = usable[:: max(1, len(usable) // CURVE_FRAMES)]
     fold = key_shape_errors.blocks(frames.shot[usable], frames.frame[usable], FOLDS)
     fixed = [setting.count] if isinstance(setting.count, int) else []
-    counts = sorted({*COUNTS, *fixed})
+    every = sorted({*COUNTS, *fixed})
+    few = every if setting.method == SLOW else fixed or [12]
     solve = partial(
         key_weights.solve, method=setting.solve, sigma=setting.sigma, bound=setting.bound
     )
@@ -132,8 +136,10 @@ def _measure(
     )
     return [
         {"method": method, "count": count, "split": split, "rms": rms}
-        for method in key_shape_selection.NAMES
-        for count, split, rms in key_shape_errors.curve(seen, fold, method, counts, solve)
+        for method in key_shape_errors.METHODS
+        for count, split, rms in key_shape_errors.curve(
+            seen, fold, method, few if method == SLOW else every, solve
+        )
     ]
 
 

@@ -6,14 +6,17 @@ from stages.core import key_shape_candidates, pca
 from stages.core.key_shape_candidates import Choice
 
 
-def choose(candidates):
+def choose(candidates, count):
     """Take every eligible frame at a corner of the hull on the first two principal axes.
 
-    The frames fix the count. Locked frames come first and are not taken twice.
+    The frames fix how many there are, whatever `count` says. Locked frames come first and are
+    not taken twice.
 
     Parameters
     ----------
     candidates : key_shape_candidates.Candidates
+    count : int
+        Not used; every selector takes one.
 
     Returns
     -------
@@ -29,6 +32,7 @@ def choose(candidates):
     -----
     CB02 section 4.2. In more than two dimensions nearly every frame is a corner.
     """
+    del count
     key_shape_candidates.check(candidates, max(1, len(candidates.locked)))
     chosen = key_shape_candidates.locked_choices(candidates)
     usable = np.flatnonzero(candidates.eligible)

@@ -21,6 +21,9 @@ class Candidates(NamedTuple):
     locked : tuple of int
         Frames that the artist has settled; taken first, whatever `eligible` says.
     seed : int
+        Of the clustering.
+    sigma : float
+        Error expected of a sculpt as a share of its distance from the neutral.
     """
 
     frames: np.ndarray
@@ -29,6 +32,7 @@ class Candidates(NamedTuple):
     eligible: np.ndarray
     locked: tuple[int, ...] = ()
     seed: int = 0
+    sigma: float = 0.1
 
 
 class Choice(NamedTuple):

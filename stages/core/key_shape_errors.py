@@ -2,9 +2,12 @@
 
 import numpy as np
 
-from stages.core import key_shape_candidates, key_shape_selection, pca
+from stages.core import clustering, key_shape_candidates, key_shape_selection, pca
 
 TRAINING, HELD_OUT = "training", "held_out"
+# clusters' centres of mass, which are no frames: what the paper plots
+CENTRES = {"clustering_2d_centres": 2, "clustering_3d_centres": 3}
+METHODS = (*key_shape_selection.SELECTORS, *CENTRES)
 
 
 def blocks(shots, frames, folds):
@@ -39,7 +42,7 @@ def curve(candidates, fold, method, counts, solve):
         Its locks are left aside: they are the artist's, not the method's.
     fold : (T,) int array
     method : str
-        See `key_shape_selection`.
+        One of `METHODS`.
     counts : sequence of int
     solve : callable
         ``(frames, shapes, neutral) -> key_weights.Solution``.
@@ -53,30 +56,34 @@ def curve(candidates, fold, method, counts, solve):
     parts = [_part(candidates, fold, number) for number in np.unique(fold)]
     fewest = min(len(training.frames) for training, _ in parts)
     counts = [count for count in counts if count <= fewest]
-    choices = [_choices(training, counts, method) for training, _ in parts]
+    every = [_shapes(training, counts, method) for training, _ in parts]
     rows = []
-    for chosen in zip(*choices, strict=True):
-        count = round(np.mean([len(frames) for frames in chosen]))
+    for chosen in zip(*every, strict=True):
+        count = round(np.mean([len(shapes) for shapes in chosen]))
         squares: dict[str, list[np.ndarray]] = {TRAINING: [], HELD_OUT: []}
-        for (training, held_out), key_frames in zip(parts, chosen, strict=True):
-            shapes = training.frames[key_frames]
+        for (training, held_out), shapes in zip(parts, chosen, strict=True):
             for split, frames in ((TRAINING, training.frames), (HELD_OUT, held_out)):
                 squares[split].append(solve(frames, shapes, candidates.neutral).residual ** 2)
         rows += [(count, split, rms(np.concatenate(part))) for split, part in squares.items()]
     return rows
 
 
-def _choices(candidates, counts, method):
-    """Return the frames chosen for every count; once where the data fix the count."""
+def _shapes(candidates, counts, method):
+    """Return the key shapes (K, D) of every count; once where the data fix the count."""
+    if method in CENTRES:
+        return [clustering.centres(candidates, count, CENTRES[method]) for count in counts]
     if method == key_shape_selection.FIXED_BY_DATA:
         counts = counts[:1]
     if method in key_shape_selection.NESTED:
-        largest = key_shape_selection.choose(candidates, max(counts), method)
-        return [[choice.frame for choice in largest[:count]] for count in counts]
-    return [
-        [choice.frame for choice in key_shape_selection.choose(candidates, count, method)]
-        for count in counts
-    ]
+        largest = _chosen(candidates, max(counts), method)
+        return [largest[:count] for count in counts]
+    return [_chosen(candidates, count, method) for count in counts]
+
+
+def _chosen(candidates, count, method):
+    """Return the shapes (K, D) that a selector takes."""
+    choices = key_shape_selection.choose(candidates, count, method)
+    return candidates.frames[[choice.frame for choice in choices]]
 
 
 def rms(squares):
@@ -95,5 +102,6 @@ def _part(candidates, fold, number):
         pca.fit(frames),
         np.ones(len(frames), bool),
         seed=candidates.seed,
+        sigma=candidates.sigma,
     )
     return training, candidates.frames[inside]

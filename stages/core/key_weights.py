@@ -6,6 +6,9 @@ import numpy as np
 
 from stages.core import box_least_squares, simplex_least_squares
 
+# an error that all sculpts share, against the error of one: from trials, see bench/
+SHARED = 0.5
+
 
 class Solution(NamedTuple):
     """Hold the weights of every frame and how far to trust them.
@@ -28,19 +31,19 @@ class Solution(NamedTuple):
 def nonnegative_absolute(frames, shapes, neutral, sigma, bound):
     """Minimise ``|x - sum_i w_i s_i|^2`` over ``w >= 0``, shapes as they are (CB02 eq. 4)."""
     del neutral, sigma
-    return _boxed(frames, shapes, np.zeros(len(shapes)), 0.0, bound)
+    return _boxed(frames, shapes, _nothing(shapes), 0.0, bound)
 
 
 def nonnegative_offset(frames, shapes, neutral, sigma, bound):
     """Minimise ``|x - n - sum_i w_i d_i|^2`` over ``w >= 0``, with ``d_i = s_i - n``."""
     del sigma
-    return _boxed(frames - neutral, shapes - neutral, np.zeros(len(shapes)), 0.0, bound)
+    return _boxed(frames - neutral, shapes - neutral, _nothing(shapes), 0.0, bound)
 
 
 def least_squares(frames, shapes, neutral, sigma, bound):
     """Minimise ``|x - n - sum_i w_i d_i|^2``, with ``d_i = s_i - n``."""
     del sigma
-    return _boxed(frames - neutral, shapes - neutral, np.zeros(len(shapes)), -np.inf, bound)
+    return _boxed(frames - neutral, shapes - neutral, _nothing(shapes), -np.inf, bound)
 
 
 def tolerant(frames, shapes, neutral, sigma, bound):
@@ -50,9 +53,26 @@ def tolerant(frames, shapes, neutral, sigma, bound):
     distance from the neutral, independently of the others.
     """
     offsets = shapes - neutral
-    return _boxed(
-        frames - neutral, offsets, sigma * np.linalg.norm(offsets, axis=1), -np.inf, bound
-    )
+    penalty = np.diag(sigma * np.linalg.norm(offsets, axis=1))
+    return _boxed(frames - neutral, offsets, penalty, -np.inf, bound)
+
+
+def tolerant_shared(frames, shapes, neutral, sigma, bound):
+    """Minimise the tolerant objective plus ``b^2 (sum_i w_i)^2``.
+
+    b is the length of an error that all sculpts share, half of `sigma` times the root mean
+    square of ``|d_i|``: where the weights' sum is large, such an error comes through whole.
+    """
+    offsets = shapes - neutral
+    square = np.sum(offsets**2, axis=1)
+    shared = np.full((1, len(shapes)), np.sqrt(shared_variance(square.mean(), sigma)))
+    penalty = np.vstack([np.diag(sigma * np.sqrt(square)), shared])
+    return _boxed(frames - neutral, offsets, penalty, -np.inf, bound)
+
+
+def shared_variance(square, sigma):
+    """Return the squared length of the error that all sculpts share, from their mean square."""
+    return (SHARED * sigma) ** 2 * square
 
 
 def simplex(frames, shapes, neutral, sigma, bound):
@@ -69,6 +89,7 @@ SOLVES = {
     "simplex": simplex,
     "least_squares": least_squares,
     "tolerant": tolerant,
+    "tolerant_shared": tolerant_shared,
 }
 
 
@@ -83,7 +104,8 @@ def solve(frames, shapes, neutral, method, sigma=0.0, bound=None):
     method : str
         A name in `SOLVES`.
     sigma : float
-        Error expected of a sculpt as a share of its distance from the neutral; `tolerant`.
+        Error expected of a sculpt as a share of its distance from the neutral; both
+        tolerant solves.
     bound : float or None
         Keep weights within ``[-bound, 1 + bound]``, non-negative solves within
         ``[0, 1 + bound]``; None for no bound. A simplex is bounded by itself.
@@ -112,11 +134,16 @@ def solve(frames, shapes, neutral, method, sigma=0.0, bound=None):
     return Solution(weights, residual, kkt_residual)
 
 
+def _nothing(shapes):
+    """Return the penalty (0, K) of a solve that tolerates nothing."""
+    return np.zeros((0, len(shapes)))
+
+
 def _boxed(targets, columns, penalty, least, bound):
-    """Minimise ``|x - sum_i w_i c_i|^2 + sum_i (penalty_i w_i)^2`` above `least` and in `bound`."""
+    """Minimise ``|x - sum_i w_i c_i|^2 + |penalty w|^2`` above `least` and within `bound`."""
     low, high = (least, np.inf) if bound is None else (max(least, -bound), 1 + bound)
     lower, upper = np.full(len(columns), low), np.full(len(columns), high)
-    matrix = np.vstack([columns.T, np.diag(penalty)])
-    padded = np.hstack([targets, np.zeros((len(targets), len(columns)))])
+    matrix = np.vstack([columns.T, penalty])
+    padded = np.hstack([targets, np.zeros((len(targets), len(penalty)))])
     weights = box_least_squares.solve(matrix, padded, lower, upper)
     return weights, box_least_squares.kkt_residual(matrix, padded, lower, upper, weights)

@@ -7,8 +7,11 @@ from pathlib import Path
 from stages.files import delimited, errors
 
 AUTOMATIC = ("knee", "budget")
-DEFAULTS = {"budget": "", "method": "successive_projection", "solve": "tolerant"} | {
-    "sigma": "0.15",
+DEFAULTS = {
+    "budget": "",
+    "method": "successive_projection",
+    "solve": "tolerant_shared",
+    "sigma": "0.1",
     "bound": "",
 }
 
