@@ -37,9 +37,10 @@ def main(argv: Sequence[str]) -> None:
     show, folder = arguments.show, arguments.figures
     _check_made(show)
     take, basis = (region_frames.read(show, shot, REGION) for shot in (TAKE, BASIS))
-    own, borrowed = lip_trial.run(take, take), lip_trial.run(take, basis)
+    settings = region_frames.settings(show, REGION)
+    own, borrowed = (lip_trial.run(take, source, settings) for source in (take, basis))
     lip_figures.draw_least_squares(own, borrowed, folder / "figure_4.png")
-    lip_figures.draw_nonnegative(own, borrowed, folder / "figure_5.png")
+    lip_figures.draw_nonnegative(own, borrowed, settings.solve, folder / "figure_5.png")
     key_shape_figure.draw(show, folder / "figure_6.png")
     retarget_figure.draw(show, folder / "figure_8a.png")
     own_figure.draw(show, folder / "figure_8b.png")

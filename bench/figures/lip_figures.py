@@ -11,7 +11,11 @@ SPREAD = 5
 WIDTH = 12.0
 TITLE = 0.36
 WORDS = 0.3
-COLOURS = {"least squares": "#D55E00", "non-negative": "#0072B2", "tolerant": "#009E73"}
+COLOURS = {
+    lip_trial.PLAIN: "#D55E00",
+    lip_trial.NONNEGATIVE: "#0072B2",
+    lip_trial.DEFAULT: "#009E73",
+}
 TRACED = "#7A4FA3"
 
 
@@ -43,7 +47,7 @@ def draw_least_squares(trial, borrowed, path):
         With key shapes of the take itself, and of the range-of-motion take.
     path : pathlib.Path
     """
-    name = "least squares"
+    name = lip_trial.PLAIN
     frames = lip_trial.sample(trial, name, SPREAD)
     own, other = trial.solved[name], borrowed.solved[name]
     caption = (
@@ -64,18 +68,30 @@ def draw_least_squares(trial, borrowed, path):
     _draw(rows, trial.contours, caption, path)
 
 
-def draw_nonnegative(trial, borrowed, path):
-    """Draw figure 5: non-negative weights, and the product's own solve; as `draw_least_squares`."""
-    frames = lip_trial.sample(trial, "least squares", SPREAD)
+def draw_nonnegative(trial, borrowed, solve, path):
+    """Draw figure 5: non-negative weights, and the show's own solve.
+
+    Parameters
+    ----------
+    trial, borrowed : lip_trial.Trial
+        As in `draw_least_squares`.
+    solve : str
+        Name of the show's own solve.
+    path : pathlib.Path
+    """
+    frames = lip_trial.sample(trial, lip_trial.PLAIN, SPREAD)
     rows = []
-    titles = ("non-negative", "equation 4"), ("tolerant", "the default here")
-    for (name, words), letters in zip(titles, ("ab", "cd"), strict=True):
+    titles = {
+        lip_trial.NONNEGATIVE: "Non-negative weights (equation 4)",
+        lip_trial.DEFAULT: f"Weights by {solve} (the default here)",
+    }
+    for (name, words), letters in zip(titles.items(), ("ab", "cd"), strict=True):
         own = [*frames, int(trial.solved[name].target_error.argmax())]
         for letter, domain in zip(letters, ("source", "target"), strict=True):
-            title = f"({letter})  {name.capitalize()} weights ({words}), {domain} domain"
+            title = f"({letter})  {words}, {domain} domain"
             rows.append((title, _played(trial, name, own, domain)))
-    numbers = ". ".join(_numbers(name, trial, borrowed) for name, _ in titles)
-    plain = trial.solved["least squares"]
+    numbers = ". ".join(_numbers(name, words, trial, borrowed) for name, words in titles.items())
+    plain = trial.solved[lip_trial.PLAIN]
     caption = (
         f"Figure 5. The frames of figure 4, and each solve's own worst frame, rebuilt by weights "
         f"that cannot cancel each other. {_traced_words()} {numbers}. Least squares (figure 4): "
@@ -93,11 +109,11 @@ def _traced_words():
     )
 
 
-def _numbers(name, trial, borrowed):
+def _numbers(name, words, trial, borrowed):
     """Return a solve's sentence of numbers."""
     own, other = trial.solved[name], borrowed.solved[name]
     return (
-        f"{name.capitalize()}: source {_percent(own.source_error)}, target "
+        f"{words}: source {_percent(own.source_error)}, target "
         f"{100 * own.target_rms:.2f} %, worst frame {100 * own.target_error.max():.1f} %, largest "
         f"weight {own.largest:.1f} (key shapes of the range-of-motion take: "
         f"{_percent(other.source_error)}, {100 * other.target_rms:.2f} %)"

@@ -12,14 +12,24 @@ COUNT = 21
 METHOD = "maximum_spread"
 TRACING = 0.015  # face units
 DRAWS = 20
-SIGMA = 0.15
+PLAIN, NONNEGATIVE, DEFAULT = "least squares", "non-negative", "default"
 
-# name: (solve of key_weights, whether shapes are taken minus the neutral)
-SOLVES = {
-    "least squares": ("least_squares", False),
-    "non-negative": ("nonnegative_absolute", False),
-    "tolerant": ("tolerant", True),
-}
+
+class How(NamedTuple):
+    """Say how weights are solved, and whether shapes are taken minus the neutral."""
+
+    solve: str
+    offset: bool
+    sigma: float = 0.0
+
+
+def solves(settings):
+    """Return the two published solves on absolute shapes, and the show's own, by name."""
+    return {
+        PLAIN: How("least_squares", False),
+        NONNEGATIVE: How("nonnegative_absolute", False),
+        DEFAULT: How(settings.solve, True, settings.sigma),
+    }
 
 
 class Reconstruction(NamedTuple):
@@ -54,7 +64,7 @@ class Trial(NamedTuple):
     shapes, traced : (K, P, 2) float array [face units]
     contours : (P,) array of the contours' names
     numbers : (T,) int array, of the frames in their shot
-    solved : dict of Reconstruction by the names of `SOLVES`
+    solved : dict of Reconstruction by name, see `solves`
     """
 
     frames: np.ndarray
@@ -65,32 +75,33 @@ class Trial(NamedTuple):
     solved: dict[str, Reconstruction]
 
 
-def run(lips, basis):
+def run(lips, basis, settings):
     """Choose key shapes from a basis, trace them, and rebuild a take from both sets.
 
     Parameters
     ----------
     lips, basis : region_frames.RegionFrames
         The take, and the frames that key shapes are chosen from; may be the same.
+    settings : region_settings.Settings
 
     Returns
     -------
     Trial
     """
     flat = basis.points.reshape(len(basis.points), -1)
-    chosen = region_frames.choose(flat, basis.neutral.ravel(), COUNT, METHOD)
+    chosen = region_frames.choose(flat, basis.neutral.ravel(), COUNT, METHOD, settings.sigma)
     shapes = basis.points[chosen]
     contours = np.array([point_set.contour_of(name) for name in lips.names])
     # the last row is the neutral, which is traced like the rest
     drawn = [tracing.error(COUNT + 1, contours, TRACING, seed) for seed in range(DRAWS)]
     solved = {
-        name: reconstruct(lips.points, shapes, lips.neutral, drawn, *how)
-        for name, how in SOLVES.items()
+        name: reconstruct(lips.points, shapes, lips.neutral, drawn, how)
+        for name, how in solves(settings).items()
     }
     return Trial(lips.points, shapes, shapes + drawn[0][:-1], contours, lips.frame, solved)
 
 
-def reconstruct(frames, shapes, neutral, drawn, solve, offset):
+def reconstruct(frames, shapes, neutral, drawn, how):
     """Solve weights on tracked key shapes and play them on tracked and on traced ones.
 
     Parameters
@@ -100,20 +111,20 @@ def reconstruct(frames, shapes, neutral, drawn, solve, offset):
     neutral : (P, 2) float array [face units]
     drawn : list of (K + 1, P, 2) float arrays [face units]
         Errors of tracings: of the K shapes, and of the neutral.
-    solve : str
-        A name in `key_weights.SOLVES`.
-    offset : bool
-        Whether shapes are played as offsets from the neutral; else ``sum_i w_i s_i`` (eq. 3).
+    how : How
+        Without offsets, shapes are played as ``sum_i w_i s_i`` (eq. 3).
 
     Returns
     -------
     Reconstruction
     """
-    origin = neutral if offset else np.zeros_like(neutral)
+    origin = neutral if how.offset else np.zeros_like(neutral)
     flat = [array.reshape(len(array), -1) for array in (frames, shapes)]
-    weights = key_weights.solve(*flat, origin.ravel(), solve, SIGMA).weights
+    weights = key_weights.solve(*flat, origin.ravel(), how.solve, how.sigma).weights
     source = play(weights, shapes, origin)
-    targets = (play(weights, shapes + error[:-1], origin + offset * error[-1]) for error in drawn)
+    targets = (
+        play(weights, shapes + error[:-1], origin + how.offset * error[-1]) for error in drawn
+    )
     first, *others = [(target, point_error(target, frames)) for target in targets]
     squares = [first[1] ** 2, *(error**2 for _, error in others)]
     return Reconstruction(

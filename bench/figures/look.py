@@ -12,7 +12,7 @@ FAINT = "#D9D5D0"
 TITLE = {"size": 11, "weight": "bold", "color": INK}
 CAPTION_SIZE = 9.5
 LINE_HEIGHT = 0.185  # inches
-LETTERS_AN_INCH = 15.2
+LETTERS_AN_INCH = 14.6
 
 
 def page(width: float, height: float, caption: str):

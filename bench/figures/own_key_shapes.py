@@ -64,8 +64,8 @@ def read(show: Path) -> Sequence:
     basis = {region: region_frames.read(show, BASIS, region) for region in table}
     chosen = {
         SHOWN: _shown(show, table),
-        SAME: {r: _choose(BASIS, basis[r], COUNTS[r], settings[r].method) for r in table},
-        OWN: {r: _choose(SHOT, moving[r], COUNTS[r], settings[r].method) for r in table},
+        SAME: {r: _choose(BASIS, basis[r], COUNTS[r], settings[r]) for r in table},
+        OWN: {r: _choose(SHOT, moving[r], COUNTS[r], settings[r]) for r in table},
     }
     return Sequence(np.array(frame), moving, settings, chosen)
 
@@ -186,9 +186,11 @@ def _at(own: region_frames.RegionFrames, frame: list[int]) -> region_frames.Regi
     return own._replace(points=own.points[rows], frame=own.frame[rows])
 
 
-def _choose(shot: str, own: region_frames.RegionFrames, count: int, method: str) -> KeySet:
+def _choose(
+    shot: str, own: region_frames.RegionFrames, count: int, setting: region_settings.Settings
+) -> KeySet:
     """Choose key shapes from a region's frames."""
-    rows = region_frames.choose(*region_frames.features(own), count, method)
+    rows = region_frames.choose(*region_frames.features(own), count, setting.method, setting.sigma)
     return KeySet([(shot, int(own.frame[row])) for row in rows], own.points[rows])
 
 

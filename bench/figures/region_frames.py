@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stages.core import key_shape_candidates, key_shape_selection, pca, region_features
-from stages.files import basis, regions
+from stages.files import basis, region_settings, regions
 
 GOOD = 0.5
 
@@ -58,13 +58,19 @@ def features(region):
     return frames, region_features.stack(region.neutral, region.weights)
 
 
-def candidates(frames, neutral, seed=0):
+def candidates(frames, neutral, sigma):
     """Return frames (T, D) as candidates, all of them eligible, with their own axes."""
     eligible = np.ones(len(frames), bool)
-    return key_shape_candidates.Candidates(frames, neutral, pca.fit(frames), eligible, seed=seed)
+    return key_shape_candidates.Candidates(frames, neutral, pca.fit(frames), eligible, sigma=sigma)
 
 
-def choose(frames, neutral, count, method):
+def choose(frames, neutral, count, method, sigma):
     """Return the rows of frames (T, D) that a selector takes as key shapes."""
-    chosen = key_shape_selection.choose(candidates(frames, neutral), count, method)
-    return [choice.frame for choice in chosen]
+    seen = candidates(frames, neutral, sigma)
+    return [choice.frame for choice in key_shape_selection.choose(seen, count, method)]
+
+
+def settings(show: Path, region: str) -> region_settings.Settings:
+    """Return the show's settings of a region."""
+    table = regions.read(show / "config" / "regions.tsv")
+    return region_settings.read(show / "config" / "region_settings.tsv", table)[region]

@@ -14,6 +14,7 @@ from bench.figures import (
 from stages.core import key_weights
 from stages.files import region_settings
 
+SETTINGS = region_settings.Settings(12, None, "maximum_spread", "tolerant", 0.15, None)
 CONTOURS = np.repeat(["lips_outer", "lips_inner"], [20, 16])
 
 
@@ -52,16 +53,16 @@ def test_tracing_is_smooth_along_each_contour(contour):
     assert (spectrum[:, 1].mean() > spectrum[:, 2 : tracing.WAVES + 1].mean(axis=(0, 2))).all()
 
 
-@pytest.mark.parametrize("name", list(lip_trial.SOLVES))
+@pytest.mark.parametrize("name", list(lip_trial.solves(SETTINGS)))
 def test_a_perfect_tracing_changes_nothing(generator, name):
     take = lips(generator, 30, 5)
     still = [np.zeros((6, *take.neutral.shape))]
     solved = lip_trial.reconstruct(
-        take.points, take.points[:5], take.neutral, still, *lip_trial.SOLVES[name]
+        take.points, take.points[:5], take.neutral, still, lip_trial.solves(SETTINGS)[name]
     )
     np.testing.assert_allclose(solved.target, solved.source, atol=1e-12)
     assert solved.target_rms == pytest.approx(lip_trial.rms(solved.source_error))
-    if name != "tolerant":
+    if name != lip_trial.DEFAULT:
         assert solved.source_error.max() < 1e-9
 
 
@@ -69,7 +70,11 @@ def test_the_neutral_is_traced_too(generator):
     take = lips(generator, 30, 5)
     shift = [np.full((6, *take.neutral.shape), 0.25)]
     moved = lip_trial.reconstruct(
-        take.points, take.points[:5], take.neutral, shift, *lip_trial.SOLVES["tolerant"]
+        take.points,
+        take.points[:5],
+        take.neutral,
+        shift,
+        lip_trial.solves(SETTINGS)[lip_trial.DEFAULT],
     )
     np.testing.assert_allclose(moved.target - moved.source, 0.25, atol=1e-12)
 
@@ -81,18 +86,18 @@ def test_nearly_dependent_shapes_spoil_least_squares_only(generator):
     noisy = take.points + generator.normal(scale=0.02, size=take.points.shape)
     drawn = [tracing.error(13, CONTOURS, 0.05, seed) for seed in range(5)]
     found = {
-        name: lip_trial.reconstruct(noisy, shapes, take.neutral, drawn, *how)
-        for name, how in lip_trial.SOLVES.items()
+        name: lip_trial.reconstruct(noisy, shapes, take.neutral, drawn, how)
+        for name, how in lip_trial.solves(SETTINGS).items()
     }
-    plain = found["least squares"]
-    for name in ("non-negative", "tolerant"):
+    plain = found[lip_trial.PLAIN]
+    for name in (lip_trial.NONNEGATIVE, lip_trial.DEFAULT):
         assert lip_trial.rms(plain.source_error) < lip_trial.rms(found[name].source_error)
         assert plain.target_rms > 2 * found[name].target_rms
 
 
 def test_sample_ends_with_the_worst_frame(generator):
     take = lips(generator, 60, 22)
-    trial = lip_trial.run(take, take)
+    trial = lip_trial.run(take, take, SETTINGS)
     for name, solved in trial.solved.items():
         *spread, worst = lip_trial.sample(trial, name, 5)
         assert solved.target_error[worst] == solved.target_error.max()
@@ -104,7 +109,7 @@ def test_figure_6_reaches_zero_at_the_corners(generator):
     take = lips(generator, 160, 6)
     for start in range(0, 160, 20):
         take.points[start : start + 6] = take.points[:6]
-    rows = key_shape_figure.nonnegative_errors(take)
+    rows = key_shape_figure.nonnegative_errors(take, 0.1)
     error = {(row["method"], row["split"], row["count"]): row["rms"] for row in rows}
     for split in ("training", "held_out"):
         assert error["successive_projection", split, 6] < 1e-9
