@@ -65,8 +65,10 @@ def bend(image: np.ndarray, source: np.ndarray, target: np.ndarray) -> np.ndarra
 
 def _bending(places: np.ndarray, centres: np.ndarray) -> np.ndarray:
     """Return `r^2 log r` for every place (N, 2) and centre (M, 2)."""
-    square = ((places[:, None] - centres) ** 2).sum(axis=2)
-    return 0.5 * square * np.log(square + 1e-9)
+    square = (places**2).sum(axis=1)[:, None] + (centres**2).sum(axis=1)
+    square -= 2 * (places @ centres.T)
+    np.maximum(square, 1e-9, out=square)
+    return 0.5 * square * np.log(square)
 
 
 def _thin_plate(centres: np.ndarray, values: np.ndarray) -> np.ndarray:
