@@ -10,8 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from stages.core import patch_features, similarity, warp
-from stages.core.face_frame import FaceFrame
+from stages.core import face_frame, patch_features, similarity, warp
 
 SPREADS = (1.0, 1.2, 1.0, 0.8)
 SHRINK = 2.0
@@ -45,7 +44,9 @@ class Look:
     channels: np.ndarray
 
 
-def look(image: np.ndarray, frame: FaceFrame, points: np.ndarray, shrink: float = 1.0) -> Look:
+def look(
+    image: np.ndarray, frame: face_frame.FaceFrame, points: np.ndarray, shrink: float = 1.0
+) -> Look:
     """Cut out the face where the points (P, 2) [px] put it, shrunk, and take its gradients."""
     pose = frame.pose(points) * [shrink, shrink, 1]
     size = (round(frame.size[0] / shrink), round(frame.size[1] / shrink))
@@ -60,7 +61,7 @@ def describe(seen: Look, points: np.ndarray) -> np.ndarray:
 
 def refine(
     descent: Descent,
-    frame: FaceFrame,
+    frame: face_frame.FaceFrame,
     groups: Sequence[np.ndarray],
     image: np.ndarray,
     points: np.ndarray,
@@ -102,7 +103,7 @@ def train(
     sources: np.ndarray,
     truth: np.ndarray,
     starts: np.ndarray,
-    frame: FaceFrame,
+    frame: face_frame.FaceFrame,
     groups: Sequence[np.ndarray],
     ridges: Sequence[float],
 ) -> tuple[Descent, np.ndarray]:

@@ -10,8 +10,7 @@ import dataclasses
 import cv2
 import numpy as np
 
-from stages.core import similarity, warp
-from stages.core.face_frame import FaceFrame
+from stages.core import face_frame, similarity, warp
 
 PIXEL_STEP = 2  # the pixels are taken at half the face frame's resolution
 HULL_MARGIN_PX = 8
@@ -41,7 +40,9 @@ class EigenPoints:
     solver: np.ndarray
 
 
-def train(images: np.ndarray, shapes: np.ndarray, frame: FaceFrame, components: int) -> EigenPoints:
+def train(
+    images: np.ndarray, shapes: np.ndarray, frame: face_frame.FaceFrame, components: int
+) -> EigenPoints:
     """Analyse pixels and points of labelled faces together.
 
     The joint vector is `[p / |p|_rms, q / |q|_rms]`: pixels and points get equal total variance.
@@ -94,7 +95,7 @@ def train(images: np.ndarray, shapes: np.ndarray, frame: FaceFrame, components: 
 
 
 def project(
-    model: EigenPoints, frame: FaceFrame, image: np.ndarray, points: np.ndarray
+    model: EigenPoints, frame: face_frame.FaceFrame, image: np.ndarray, points: np.ndarray
 ) -> tuple[np.ndarray, float]:
     """Find the points of a face from its pixels alone, near where it was.
 
@@ -127,7 +128,7 @@ def project(
     return similarity.apply(pose, shape), float(np.sqrt((difference**2).mean()))
 
 
-def _mask(frame: FaceFrame) -> np.ndarray:
+def _mask(frame: face_frame.FaceFrame) -> np.ndarray:
     """Return which of the coarse pixels lie in the widened hull of the mean shape."""
     hull = cv2.convexHull((frame.points / PIXEL_STEP).astype(np.float32)).astype(np.int32)
     shape = tuple(-(-side // PIXEL_STEP) for side in frame.size[::-1])
@@ -173,7 +174,7 @@ def _solver(
     return np.linalg.solve(normal, rows.T / noise).astype(np.float32)
 
 
-def _affine_step(values: np.ndarray, frame: FaceFrame) -> np.ndarray:
+def _affine_step(values: np.ndarray, frame: face_frame.FaceFrame) -> np.ndarray:
     """Return the (2, 3) map of the face frame that six solved numbers mean."""
     a, b, x, c, d, y = values
     linear = np.array([[1 + a, b], [c, 1 + d]])

@@ -5,8 +5,7 @@ import dataclasses
 import cv2
 import numpy as np
 
-from stages.core import similarity, warp
-from stages.core.face_frame import FaceFrame
+from stages.core import face_frame, similarity, warp
 
 TEMPLATE_PX = 24
 SIZE_RATIO = 1.15
@@ -31,7 +30,7 @@ class Finder:
     scales: np.ndarray
 
 
-def train(faces: np.ndarray, scales: np.ndarray, frame: FaceFrame) -> Finder:
+def train(faces: np.ndarray, scales: np.ndarray, frame: face_frame.FaceFrame) -> Finder:
     """Average faces into a template.
 
     Parameters
@@ -54,7 +53,9 @@ def train(faces: np.ndarray, scales: np.ndarray, frame: FaceFrame) -> Finder:
     )
 
 
-def search(finder: Finder, frame: FaceFrame, picture: np.ndarray, wanted: int) -> list[np.ndarray]:
+def search(
+    finder: Finder, frame: face_frame.FaceFrame, picture: np.ndarray, wanted: int
+) -> list[np.ndarray]:
     """Return where the mean shape correlates best with the picture, best first.
 
     Parameters
@@ -87,7 +88,12 @@ def search(finder: Finder, frame: FaceFrame, picture: np.ndarray, wanted: int) -
 
 
 def _at(
-    finder: Finder, frame: FaceFrame, light: np.ndarray, pixel: float, angle: float, wanted: int
+    finder: Finder,
+    frame: face_frame.FaceFrame,
+    light: np.ndarray,
+    pixel: float,
+    angle: float,
+    wanted: int,
 ) -> list[tuple[float, np.ndarray]]:
     """Return the best matches at one size and angle, with their correlations."""
     height, width = light.shape

@@ -4,8 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from stages.core import similarity, warp
-from stages.core.face_frame import FaceFrame
+from stages.core import face_frame, similarity, warp
 
 
 def relit(
@@ -87,7 +86,7 @@ def bent(
 def starts(
     shapes: np.ndarray,
     sources: np.ndarray,
-    frame: FaceFrame,
+    frame: face_frame.FaceFrame,
     groups: Sequence[np.ndarray],
     spread: tuple[float, float, float],
     group_spread: np.ndarray,

@@ -2,17 +2,19 @@
 
 import numpy as np
 
-from stages.core.confidence import Judge
-from stages.core.descent import Descent
-from stages.core.eigen_points import EigenPoints
-from stages.core.face_frame import FaceFrame
-from stages.core.face_search import Finder
-from stages.core.face_tracker import FaceTracker
+from stages.core import (
+    confidence,
+    descent,
+    eigen_points,
+    face_frame,
+    face_search,
+    face_tracker,
+)
 
-PARTS = {"eigen": EigenPoints, "judge": Judge, "finder": Finder}
+PARTS = {"eigen": eigen_points.EigenPoints, "judge": confidence.Judge, "finder": face_search.Finder}
 
 
-def pack(tracker: FaceTracker) -> dict[str, np.ndarray]:
+def pack(tracker: face_tracker.FaceTracker) -> dict[str, np.ndarray]:
     """Return the tracker's arrays: `frame.points`, `group.0`, `descent.0.0.weights` and so on."""
     arrays = {"frame.points": tracker.frame.points, "frame.size": np.array(tracker.frame.size)}
     for r, group in enumerate(tracker.groups):
@@ -29,7 +31,7 @@ def pack(tracker: FaceTracker) -> dict[str, np.ndarray]:
     return arrays
 
 
-def unpack(arrays: dict[str, np.ndarray]) -> FaceTracker:
+def unpack(arrays: dict[str, np.ndarray]) -> face_tracker.FaceTracker:
     """Return the tracker that `pack` took apart.
 
     Raises
@@ -40,7 +42,7 @@ def unpack(arrays: dict[str, np.ndarray]) -> FaceTracker:
     try:
         groups = tuple(arrays[f"group.{r}"] for r in range(_count(arrays, "group.", 1)))
         stages = range(_count(arrays, "descent.", 1))
-        cascade = Descent(
+        cascade = descent.Descent(
             *(
                 tuple(
                     tuple(arrays[f"descent.{stage}.{r}.{what}"] for r in range(len(groups)))
@@ -54,10 +56,10 @@ def unpack(arrays: dict[str, np.ndarray]) -> FaceTracker:
             for part, kind in PARTS.items()
         }
         width, height = arrays["frame.size"].tolist()
-        frame = FaceFrame(arrays["frame.points"], (width, height))
+        frame = face_frame.FaceFrame(arrays["frame.points"], (width, height))
     except KeyError as missing:
         raise ValueError(f"array {missing} is missing") from None
-    return FaceTracker(frame, groups, cascade=cascade, **parts)
+    return face_tracker.FaceTracker(frame, groups, cascade=cascade, **parts)
 
 
 def _count(arrays: dict[str, np.ndarray], prefix: str, place: int) -> int:

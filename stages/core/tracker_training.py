@@ -11,13 +11,13 @@ from stages.core import (
     eigen_points,
     face_frame,
     face_search,
+    face_tracker,
     face_variations,
     false_faces,
     morph,
     similarity,
     warp,
 )
-from stages.core.face_tracker import FaceTracker
 
 METHODS = ("eigen_points", "eigen_points_descent")
 LEAST_LABELLED = 3
@@ -65,7 +65,7 @@ def train(
     groups: Sequence[np.ndarray],
     method: str,
     seed: int,
-) -> FaceTracker:
+) -> face_tracker.FaceTracker:
     """Learn a tracker.
 
     Parameters
@@ -104,7 +104,7 @@ def train(
         [warp.prewarp(p, frame.pose(s), frame.size) for p, s in zip(pictures, shapes, strict=True)]
     )
     finder = face_search.train(fronts, scales, frame)
-    return FaceTracker(frame, tuple(groups), eigen, cascade, judge, finder)
+    return face_tracker.FaceTracker(frame, tuple(groups), eigen, cascade, judge, finder)
 
 
 def _faces(
