@@ -94,7 +94,7 @@ def draw_nonnegative(trial, borrowed, solve, path):
     plain = trial.solved[lip_trial.PLAIN]
     caption = (
         f"Figure 5. The frames of figure 4, and each solve's own worst frame, rebuilt by weights "
-        f"that cannot cancel each other. {_traced_words()} {numbers}. Least squares (figure 4): "
+        f"kept from cancelling each other. {_traced_words()} {numbers}. Least squares (figure 4): "
         f"{_percent(plain.source_error)} and {100 * plain.target_rms:.2f} %. The tracing alone is "
         f"{100 * lip_trial.TRACING:.1f} %."
     )
@@ -104,8 +104,9 @@ def draw_nonnegative(trial, borrowed, solve, path):
 def _traced_words():
     """Return the sentence on the traced key shapes."""
     return (
-        f"The target's key shapes are traced: a smooth error of {100 * lip_trial.TRACING:.1f} % of "
-        f"the face unit (the distance of the eyes) along each contour, from a seed."
+        "The target's key shapes and neutral are traced: a smooth error of "
+        f"{100 * lip_trial.TRACING:.1f} % of the face unit (the distance of the eyes) along each "
+        "contour, from a seed."
     )
 
 

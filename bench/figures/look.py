@@ -29,7 +29,10 @@ def page(width: float, height: float, caption: str):
         The picture, and the part of it above the caption.
     """
     margin = 0.25
-    lines = textwrap.wrap(caption, int((width - 2 * margin) * LETTERS_AN_INCH))
+    # a number keeps its unit
+    lines = textwrap.wrap(
+        caption.replace(" %", "\u00a0%"), int((width - 2 * margin) * LETTERS_AN_INCH)
+    )
     below = LINE_HEIGHT * len(lines) + 2 * margin
     whole = figure.Figure(figsize=(width, height + below), dpi=DPI, facecolor="white")
     backend_agg.FigureCanvasAgg(whole)
