@@ -14,7 +14,7 @@ _TIE_BREAK = 1e-9
 def choose(candidates, count):
     """Minimise ``tr(C^(1/2) (I - D' (D D' + P)^-1 D))`` over sets of frames with offsets D.
 
-    P is the tolerance of `key_weights.tolerant_shared`. With C the second moment of all offsets
+    P is the tolerance of `key_weights.tolerant_even`. With C the second moment of all offsets
     in place of its square root this is CB02's equation 5 plus the error that flawed sculpts add
     to it, ``sum_t min_w |x_t - n - sum_i w_i d_i|^2 + tolerance(w)``. The root lets rare
     expressions count for more than they do on average, because new footage holds others still.
@@ -82,8 +82,8 @@ def _best(offsets, root, rows, sigma, eligible):
 def _gains(offsets, root, rows, sigma):
     """Return by how much (T,) each frame would lower the expected error beside those in `rows`."""
     square = np.sum(offsets**2, axis=1)
-    own = (sigma**2 + _TIE_BREAK) * square + np.finfo(float).tiny
-    shared = key_weights.shared_variance(square.mean(), sigma)
+    own, shared = key_weights.even_errors(square, sigma)
+    own = own + _TIE_BREAK * square + np.finfo(float).tiny
     left, variance = offsets, square + shared + own
     if len(rows):
         cross = offsets[rows] @ offsets.T + shared

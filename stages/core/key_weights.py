@@ -6,8 +6,10 @@ import numpy as np
 
 from stages.core import box_least_squares, simplex_least_squares
 
-# an error that all sculpts share, against the error of one: from trials, see bench/
-SHARED = 0.5
+# how far weights of tolerant_even may leave 0..1 where the settings do not say
+EVEN_BOUND = 0.2
+# length of the error that all sculpts share, against the one of each
+_SHARED = 0.25
 
 
 class Solution(NamedTuple):
@@ -57,22 +59,33 @@ def tolerant(frames, shapes, neutral, sigma, bound):
     return _boxed(frames - neutral, offsets, penalty, -np.inf, bound)
 
 
-def tolerant_shared(frames, shapes, neutral, sigma, bound):
-    """Minimise the tolerant objective plus ``b^2 (sum_i w_i)^2``.
+def tolerant_even(frames, shapes, neutral, sigma, bound):
+    """Minimise ``|x - n - sum_i w_i d_i|^2 + sum_i w_i^2 e_i^2 + b^2 (sum_i w_i)^2``.
 
-    b is the length of an error that all sculpts share, half of `sigma` times the root mean
-    square of ``|d_i|``: where the weights' sum is large, such an error comes through whole.
+    `even_errors` gives e_i and b: an artist, and the tracking of the key shape itself, are off
+    by an amount that shrinks less than the pose does, and all sculpts share some of it.
     """
     offsets = shapes - neutral
-    square = np.sum(offsets**2, axis=1)
-    shared = np.full((1, len(shapes)), np.sqrt(shared_variance(square.mean(), sigma)))
-    penalty = np.vstack([np.diag(sigma * np.sqrt(square)), shared])
+    own, shared = even_errors(np.sum(offsets**2, axis=1), sigma)
+    penalty = np.vstack([np.diag(np.sqrt(own)), np.full((1, len(shapes)), np.sqrt(shared))])
+    bound = EVEN_BOUND if bound is None else bound
     return _boxed(frames - neutral, offsets, penalty, -np.inf, bound)
 
 
-def shared_variance(square, sigma):
-    """Return the squared length of the error that all sculpts share, from their mean square."""
-    return (SHARED * sigma) ** 2 * square
+def even_errors(squares, sigma):
+    """Return the squared error expected of every sculpt (K,), and that which all share.
+
+    ``e_i^2 = sigma^2 (|d_i|^2 + m^2) / 2`` and ``b^2 = (sigma / 4)^2 m^2``, m being the root mean
+    square of the lengths ``|d_i|``.
+
+    Parameters
+    ----------
+    squares : (K,) float array [feature unit squared]
+        ``|d_i|^2``.
+    sigma : float
+    """
+    mean = np.mean(squares) if len(squares) else 0.0
+    return sigma**2 * (squares + mean) / 2, (_SHARED * sigma) ** 2 * mean
 
 
 def simplex(frames, shapes, neutral, sigma, bound):
@@ -89,7 +102,7 @@ SOLVES = {
     "simplex": simplex,
     "least_squares": least_squares,
     "tolerant": tolerant,
-    "tolerant_shared": tolerant_shared,
+    "tolerant_even": tolerant_even,
 }
 
 
@@ -108,7 +121,8 @@ def solve(frames, shapes, neutral, method, sigma=0.0, bound=None):
         tolerant solves.
     bound : float or None
         Keep weights within ``[-bound, 1 + bound]``, non-negative solves within
-        ``[0, 1 + bound]``; None for no bound. A simplex is bounded by itself.
+        ``[0, 1 + bound]``; None for no bound, and for 0.2 with `tolerant_even`. A simplex is
+        bounded by itself.
 
     Returns
     -------

@@ -10,7 +10,7 @@ AUTOMATIC = ("knee", "budget")
 DEFAULTS = {
     "budget": "",
     "method": "successive_projection",
-    "solve": "tolerant_shared",
+    "solve": "tolerant_even",
     "sigma": "0.1",
     "bound": "",
 }
@@ -27,7 +27,7 @@ class Settings:
     method : how key shapes are chosen
     solve : what the weights minimise
     sigma : relative error expected of a sculpt
-    bound : weights stay within -bound and 1 + bound, or None
+    bound : weights stay within -bound and 1 + bound, or None for what the solve does by itself
     """
 
     count: int | str
