@@ -21,6 +21,7 @@ class How(NamedTuple):
     solve: str
     offset: bool
     sigma: float = 0.0
+    bound: float | None = None
 
 
 def solves(settings):
@@ -28,7 +29,7 @@ def solves(settings):
     return {
         PLAIN: How("least_squares", False),
         NONNEGATIVE: How("nonnegative_absolute", False),
-        DEFAULT: How(settings.solve, True, settings.sigma),
+        DEFAULT: How(settings.solve, True, settings.sigma, settings.bound),
     }
 
 
@@ -120,7 +121,7 @@ def reconstruct(frames, shapes, neutral, drawn, how):
     """
     origin = neutral if how.offset else np.zeros_like(neutral)
     flat = [array.reshape(len(array), -1) for array in (frames, shapes)]
-    weights = key_weights.solve(*flat, origin.ravel(), how.solve, how.sigma).weights
+    weights = key_weights.solve(*flat, origin.ravel(), how.solve, how.sigma, how.bound).weights
     source = play(weights, shapes, origin)
     targets = (
         play(weights, shapes + error[:-1], origin + how.offset * error[-1]) for error in drawn
