@@ -102,7 +102,7 @@ def _lids(side, p):
     edge = tilt + np.where(LID_LOWER, low, high) * arch * 0.95
     crease = tilt + np.where(LID_LOWER, -0.80, 0.85) * np.maximum(1 - s * s, 0) ** 0.6
     rows = []
-    for t, radius in ((0, BALL + 0.2), (0, BALL + 1.6), (0.5, BALL + 2.4), (1, BALL + 1.2)):
+    for t, radius in ((0, BALL + 1.2), (0, BALL + 2.6), (0.5, BALL + 3.2), (1, BALL + 1.8)):
         a, e = 0.98 * s * (1 + 0.15 * t), edge + t * (crease - edge)
         direction = np.stack([np.sin(a) * np.cos(e), np.sin(e), np.cos(a) * np.cos(e)], axis=1)
         rows.append(EYE[side] + radius * direction)
