@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 
 from stages import cli
-from stages.core import head_transform, polygons, preview, rasterize, shade
+from stages.core import head_transform, polygons, portrait, preview
 from stages.files import errors, exr, film, film_writer, rig, tracked_film
 
 # the camera is fixed by so many frames of the take, without this share at either end
@@ -41,22 +41,14 @@ def _usual_bounds(baked: exr.Reader) -> tuple[np.ndarray, np.ndarray]:
 
 def _painter(character: rig.Rig, baked: exr.Reader) -> Callable[[np.ndarray], np.ndarray]:
     """Return a function that draws the (V, 3) positions of a character from a fixed camera."""
-    axes = head_transform.face_axes(character.up_axis)
-    low, high = _usual_bounds(baked)
-    camera = rasterize.facing_camera(low, high, axes)
-    behind = rasterize.backdrop(preview.HEIGHT)
-    triangles = polygons.triangulate(character.sizes, character.corners)
-    normals = polygons.face_normals(character.neutral, triangles)
-    sign = shade.outward(character.neutral, triangles, normals, axes[:, 2])
-    clay = np.tile(shade.CLAY, (len(character.neutral), 1))
-    albedo = character.colours if len(character.colours) else clay
-
-    def paint(positions: np.ndarray) -> np.ndarray:
-        turned = sign * polygons.vertex_normals(positions, triangles) @ axes
-        light = shade.vertex_light(turned, albedo)
-        return rasterize.draw(positions, triangles, light, camera, behind)
-
-    return paint
+    return portrait.painter(
+        character.neutral,
+        polygons.triangulate(character.sizes, character.corners),
+        character.colours,
+        head_transform.face_axes(character.up_axis),
+        _usual_bounds(baked),
+        preview.HEIGHT,
+    )
 
 
 def main(argv: Sequence[str]) -> None:
@@ -79,14 +71,17 @@ def main(argv: Sequence[str]) -> None:
     film_writer.write(
         options.preview,
         preview.frames(
-            tracked_film.pictures(tracked), tracked.arrays, tracked.outlines,
-            f"{options.shot}, {options.character}", character_at,
+            tracked_film.pictures(tracked),
+            tracked.arrays,
+            tracked.outlines,
+            f"{options.shot}, {options.character}",
+            character_at,
         ),
         preview.size(*film.size(options.video)),
         film.nominal_rate(options.video),
         options.video,
         tracked.time_s[0],
-    )  # fmt: skip
+    )
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from bench.figures import look, region_frames
-from stages.core import head_transform, polygons, rasterize, region_features, shade
+from stages.core import head_transform, polygons, portrait, region_features
 from stages.files import basis, film, regions, rig
 
 SIDE = 480  # px
@@ -25,19 +25,15 @@ def character_pictures(character: rig.Rig, positions: np.ndarray) -> list[np.nda
     -------
     list of (SIDE, SIDE, 3) uint8 arrays
     """
-    axes = head_transform.face_axes(character.up_axis)
-    low, high = positions.min(axis=(0, 1)), positions.max(axis=(0, 1))
-    camera = rasterize.facing_camera(low, high, axes)
-    behind = rasterize.backdrop(SIDE)
-    triangles = polygons.triangulate(character.sizes, character.corners)
-    normals = polygons.face_normals(character.neutral, triangles)
-    sign = shade.outward(character.neutral, triangles, normals, axes[:, 2])
-    pictures = []
-    for shape in positions.astype(np.float32):
-        turned = sign * polygons.vertex_normals(shape, triangles) @ axes
-        light = shade.vertex_light(turned, character.colours)
-        pictures.append(rasterize.draw(shape, triangles, light, camera, behind))
-    return pictures
+    paint = portrait.painter(
+        character.neutral,
+        polygons.triangulate(character.sizes, character.corners),
+        character.colours,
+        head_transform.face_axes(character.up_axis),
+        (positions.min(axis=(0, 1)), positions.max(axis=(0, 1))),
+        SIDE,
+    )
+    return [paint(shape) for shape in positions]
 
 
 def film_path(show: Path, shot: str) -> Path:
