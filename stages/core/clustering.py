@@ -52,14 +52,21 @@ def choose(candidates, count, dimensions):
 
 def centres(candidates, count, dimensions):
     """Return the mean shape (count, D) of every cluster; locked frames stand for their own."""
+    usable = np.where(np.isfinite(candidates.frames), candidates.frames, 0.0)
+    return memberships(candidates, count, dimensions) @ usable
+
+
+def memberships(candidates, count, dimensions):
+    """Return every cluster's share (count, T) of each frame; the rows sum to one."""
     key_shape_candidates.check(candidates, count)
-    _, usable, members = _clustered(candidates, count, dimensions)
-    frames = candidates.frames[usable]
-    means = [
-        frames[member].mean(axis=0) if member.any() else candidates.model.mean
-        for _, member in members
-    ]
-    return np.vstack([candidates.frames[list(candidates.locked)], *means])
+    points, usable, members = _clustered(candidates, count, dimensions)
+    shares = np.zeros((count, len(points)))
+    shares[range(len(candidates.locked)), list(candidates.locked)] = 1.0
+    for row, (_, member) in enumerate(members, start=len(candidates.locked)):
+        # a centre that no frame is nearest to lies where they all are
+        own = usable[member] if member.any() else usable
+        shares[row, own] = 1 / len(own)
+    return shares
 
 
 def _clustered(candidates, count, dimensions):

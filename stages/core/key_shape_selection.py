@@ -10,13 +10,14 @@ from stages.core import (
     expected_error,
     farthest_residual,
     maximum_spread,
+    shared_residual,
     successive_projection,
     swap_refinement,
 )
 
 FIXED_BY_DATA = "convex_hull"
 # the first shapes of a larger choice are the choice of fewer
-NESTED = ("successive_projection", "farthest_residual")
+NESTED = ("successive_projection", "farthest_residual", "shared_residual")
 SELECTORS = {
     "maximum_spread": maximum_spread.choose,
     "clustering_2d": partial(clustering.choose, dimensions=2),
@@ -24,6 +25,7 @@ SELECTORS = {
     FIXED_BY_DATA: convex_hull.choose,
     "successive_projection": successive_projection.choose,
     "farthest_residual": farthest_residual.choose,
+    "shared_residual": shared_residual.choose,
     "swap_refinement": swap_refinement.choose,
     "expected_error": expected_error.choose,
 }

@@ -9,7 +9,7 @@ from stages.files import delimited, errors
 AUTOMATIC = ("knee", "budget")
 DEFAULTS = {
     "budget": "",
-    "method": "successive_projection",
+    "method": "shared_residual",
     "solve": "tolerant_even",
     "sigma": "0.1",
     "bound": "",
