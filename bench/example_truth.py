@@ -1,5 +1,6 @@
 """Compare the example show's results with the truth that its generator kept beside the films."""
 
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -72,3 +73,7 @@ def _true_roll(truth: dict) -> np.ndarray:
     a, b = 1 - 2 * (y * y + z * z), 2 * (x * y - z * w)
     c, d = 2 * (x * y + z * w), 1 - 2 * (x * x + z * z)
     return np.arctan2(c - b, a + d)
+
+
+if __name__ == "__main__":
+    sys.stdout.write("\n".join(table(Path(sys.argv[1]))) + "\n")
