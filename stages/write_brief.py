@@ -18,7 +18,7 @@ from stages.files import (
     outline,
     point_set,
     regions,
-    sculpts,
+    sculpt_states,
     series,
     web_page,
 )
@@ -41,7 +41,7 @@ def build_parser() -> argparse.ArgumentParser:
     parser.add_argument("--point-set", required=True, help="table of contours")
     parser.add_argument("--regions", required=True, help="table of regions")
     parser.add_argument("--characters", required=True, nargs="*", help="characters of the actor")
-    parser.add_argument("--sculpt-states", required=True, nargs="*", help="their sculpts, .parquet")
+    parser.add_argument("--states", required=True, nargs="*", help="their sculpts, .parquet")
     parser.add_argument("--template", required=True, help="template of the page")
     parser.add_argument("--page", required=True, help="the brief, .html")
     parser.add_argument("--locks", required=True, help="rows that lock the key shapes, .tsv")
@@ -54,8 +54,8 @@ def main(argv: Sequence[str]) -> None:
     shapes = key_shapes.read(arguments.key_shapes)
     pictures = _pictures(arguments, shapes)
     states = {
-        character: {(row["region"], row["key_shape"]): row for row in sculpts.read_states(path)}
-        for character, path in zip(arguments.characters, arguments.sculpt_states, strict=True)
+        character: {(row["region"], row["key_shape"]): row for row in sculpt_states.read(path)}
+        for character, path in zip(arguments.characters, arguments.states, strict=True)
     }
     locks = _lock_table(arguments.actor, shapes)
     context = {

@@ -6,14 +6,13 @@ that the file's metadata names under `points`. A name is never parsed: shot and 
 """
 
 import dataclasses
-import json
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+import numpy as np
 import pyarrow as pa
-import pyarrow.parquet as pq
 
-from stages.files import atomic, errors, provenance
+from stages.files import parquet, provenance
 
 KIND = "key_shapes"
 ERRORS_KIND = "key_shape_errors"
@@ -41,7 +40,6 @@ ERRORS_SCHEMA = pa.schema(
         "rms": pa.float64(),
     }
 )
-META_KEY = b"keyface"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -112,6 +110,21 @@ def read_points(path: str | Path) -> dict[str, list[str]]:
     return _read(path, KIND, SCHEMA)[1]["points"]
 
 
+def read_offsets(path: str | Path) -> dict[str, dict[str, np.ndarray]]:
+    """Read how the key shapes differ from the actor's neutral.
+
+    Returns
+    -------
+    region -> key shape -> (2Q,) float array [face units]
+    """
+    rows, header = _read(path, KIND, SCHEMA)
+    offsets: dict[str, dict[str, np.ndarray]] = {}
+    for row in rows:
+        offset = np.array(row["shape"]) - np.array(header["neutral"][row["region"]])
+        offsets.setdefault(row["region"], {})[row["key_shape"]] = offset
+    return offsets
+
+
 def write_errors(path: str | Path, rows: Iterable[dict], sources: Iterable[str | Path]) -> None:
     """Write rows of region, method, count, split (`training`, `held_out`) and rms [face units]."""
     meta = provenance.stamp(ERRORS_KIND, sources) | {"units": "face units"}
@@ -123,20 +136,12 @@ def read_errors(path: str | Path) -> list[dict]:
     return _read(path, ERRORS_KIND, ERRORS_SCHEMA)[0]
 
 
-def _write(path: str | Path, rows: list[dict], schema: pa.Schema, meta: dict) -> None:
+def _write(path: str | Path, rows: list[dict], schema: pa.Schema, header: dict) -> None:
     """Write rows as a Parquet table."""
-    header = {META_KEY: json.dumps(meta, sort_keys=True).encode()}
-    table = pa.Table.from_pylist(rows, schema.with_metadata(header))
-    with atomic.replacing(path) as temporary:
-        pq.write_table(table, temporary, compression="zstd")
+    parquet.write(path, pa.Table.from_pylist(rows, schema), header)
 
 
 def _read(path: str | Path, kind: str, schema: pa.Schema) -> tuple[list[dict], dict]:
-    """Read the rows and the metadata of a Parquet table of one kind."""
-    try:
-        table = pq.read_table(path)
-    except pa.ArrowInvalid as error:
-        raise errors.InputError(path, f"no Parquet file: {error}") from error
-    meta = json.loads((table.schema.metadata or {}).get(META_KEY, b"{}"))
-    provenance.check(path, meta, kind)
-    return table.select(schema.names).to_pylist(), meta
+    """Read the rows and the header of a Parquet table of one kind."""
+    table, header = parquet.read(path, kind)
+    return table.select(schema.names).to_pylist(), header

@@ -1,27 +1,16 @@
-"""A character's poses on disk, whether meshes or tables of controls, and the table of their states.
+"""A character's poses as files, whether meshes or tables of controls.
 
-A sculpt is `<sculpts folder>/<region>/<key shape><suffix of the neutral>`. Its state is a row of
-`sculpts.parquet`: region, key_shape, path, state (`present`, `missing`, `suspicious`, `unused`),
-detail (what was found) and cure (what to do).
+A sculpt is `<sculpts folder>/<region>/<key shape><suffix of the neutral>`.
 """
 
 import dataclasses
-import json
-from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.parquet as pq
 
-from stages.files import atomic, controls, errors, key_shapes, mesh, provenance, series
+from stages.files import controls, errors, mesh
 
-KIND = "sculpts"
-COLUMNS = ("region", "key_shape", "path", "state", "detail", "cure")
 CONTROL_SUFFIX = ".csv"
-
-# region and key shape
-Key = tuple[str, str]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -47,26 +36,6 @@ class Pose:
 def path_of(folder: str | Path, region: str, key_shape: str, neutral: str | Path) -> Path:
     """Return where the sculpt of a key shape is expected."""
     return Path(folder) / region / (key_shape + Path(neutral).suffix)
-
-
-def actor_offsets(path: str | Path) -> dict[str, dict[str, np.ndarray]]:
-    """Return how the actor's key shapes differ from the actor's neutral.
-
-    Parameters
-    ----------
-    path : `key_shapes.parquet`
-
-    Returns
-    -------
-    region -> key shape -> (2Q,) float array [face units]
-    """
-    shapes = key_shapes.read(path)
-    neutral = json.loads(pq.read_schema(path).metadata[key_shapes.META_KEY])["neutral"]
-    offsets: dict[str, dict[str, np.ndarray]] = {}
-    for shape in shapes:
-        offset = np.array(shape.shape) - np.array(neutral[shape.region])
-        offsets.setdefault(shape.region, {})[shape.key_shape] = offset
-    return offsets
 
 
 def read_neutral(path: str | Path) -> Pose:
@@ -106,67 +75,3 @@ def read_sculpt(path: str | Path, neutral: Pose) -> tuple[np.ndarray, bool]:
         read.corners, neutral.corners
     )
     return read.vertices, same
-
-
-class StateTable:
-    """The table of states while faults are found; several of one sculpt stand together.
-
-    Parameters
-    ----------
-    paths : where each sculpt is expected
-    """
-
-    def __init__(self, paths: dict[Key, Path]):
-        self.rows = {key: _row(*key, path) for key, path in paths.items()}
-
-    def set(self, key: Key, state: str, detail: str, cure: str) -> None:
-        """Give a sculpt a state, with what was found and what to do."""
-        row = self.rows[key]
-        row["state"] = state
-        row["detail"] = f"{row['detail']}; {detail}" if row["detail"] else detail
-        row["cure"] = f"{row['cure']}; {cure}" if row["cure"] else cure
-
-    def add_unused(self, listed: Iterable[str | Path]) -> None:
-        """Add the files among those listed that are no key shape's sculpt."""
-        expected = {row["path"] for row in self.rows.values()}
-        for path in sorted(set(map(Path, listed))):
-            if path.as_posix() not in expected:
-                key = path.parent.name, path.name
-                self.rows[key] = _row(path.parent.name, path.stem, path)
-                self.set(
-                    key, "unused", "no key shape expects this file",
-                    "remove it, or correct its folder, name or format to one of the brief",
-                )  # fmt: skip
-
-
-def _row(region: str, key_shape: str, path: Path) -> dict[str, str]:
-    """Return the row of a sculpt that nothing is wrong with."""
-    cells = (region, key_shape, path.as_posix(), "present", "", "")
-    return dict(zip(COLUMNS, cells, strict=True))
-
-
-def write_states(
-    path: str | Path, rows: Sequence[dict[str, str]], sources: Iterable[str | Path] = ()
-) -> None:
-    """Write the states of sculpts, each row with the cells of `COLUMNS`."""
-    table = pa.table({name: pa.array([row[name] for row in rows], pa.string()) for name in COLUMNS})
-    header = json.dumps(provenance.stamp(KIND, sources), sort_keys=True).encode()
-    with atomic.replacing(path) as temporary:
-        pq.write_table(table.replace_schema_metadata({series.META_KEY: header}), temporary)
-
-
-def read_states(path: str | Path) -> list[dict[str, str]]:
-    """Read the states of sculpts.
-
-    Raises
-    ------
-    errors.InputError
-        if the file is no table of them
-    """
-    try:
-        table = pq.read_table(path)
-    except pa.ArrowInvalid as error:
-        raise errors.InputError(path, f"no Parquet file: {error}") from error
-    header = json.loads((table.schema.metadata or {}).get(series.META_KEY, b"{}"))
-    provenance.check(path, header, KIND)
-    return table.to_pylist()

@@ -5,19 +5,14 @@ NaN means not observed. The file's metadata holds kind, rational frame rate, uni
 """
 
 import dataclasses
-import json
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.parquet as pq
 
-from stages.files import atomic, errors, provenance
-
-ROW_GROUP_FRAMES = 4096
-META_KEY = b"keyface"
+from stages.files import errors, parquet, provenance
 
 
 @dataclasses.dataclass(frozen=True)
@@ -68,11 +63,7 @@ def write(
         "frame": np.asarray(frame, np.int32),
         "time_s": np.asarray(time_s, np.float64),
     } | {name: np.asarray(values, np.float32) for name, values in columns.items()}
-    table = pa.table(arrays).replace_schema_metadata(
-        {META_KEY: json.dumps(header, sort_keys=True).encode()}
-    )
-    with atomic.replacing(path) as temporary:
-        pq.write_table(table, temporary, row_group_size=ROW_GROUP_FRAMES, compression="zstd")
+    parquet.write(path, pa.table(arrays), header)
 
 
 def read(path: str | Path, kind: str) -> Series:
@@ -83,12 +74,7 @@ def read(path: str | Path, kind: str) -> Series:
     errors.InputError
         if the file is no Parquet file of ours or is of another kind
     """
-    try:
-        table = pq.read_table(path)
-    except pa.ArrowInvalid as error:
-        raise errors.InputError(path, f"no Parquet file: {error}") from error
-    meta = json.loads((table.schema.metadata or {}).get(META_KEY, b"{}"))
-    provenance.check(path, meta, kind)
+    table, meta = parquet.read(path, kind)
     columns = {
         name: table[name].to_numpy().astype(np.float64)
         for name in table.column_names
@@ -125,7 +111,7 @@ def stack(series: Series, path: str | Path, names: Sequence[str], axes: str = "x
     wanted = [f"{name}.{axis}" for name in names for axis in axes]
     for column in wanted:
         if column not in series.columns:
-            raise errors.InputError(path, f"column {column} is missing")
+            raise errors.InputError(path, f"column {column} is missing: delete it and run again")
     values = np.stack([series.columns[column] for column in wanted], axis=1)
     return values.reshape(len(series.frame), len(names), len(axes))
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from stages.core import masks
-from stages.files import controls, errors, mask_table, rig, sculpts, weights
+from stages.files import controls, errors, mask_table, rig, sculpt_states, sculpts, weights
 
 NAMES = [str(vertex) for vertex in range(6)]
 
@@ -166,12 +166,12 @@ def test_weights_come_back_by_name_in_parquet_and_csv(tmp_path):
 def test_states_come_back_and_several_faults_stand_together(tmp_path):
     path = sculpts.path_of("char/sculpts", "mouth", "rom_f0001", "char/neutral.obj")
     assert path.as_posix() == "char/sculpts/mouth/rom_f0001.obj"
-    states = sculpts.StateTable({("mouth", "rom_f0001"): path})
+    states = sculpt_states.StateTable({("mouth", "rom_f0001"): path})
     states.set(("mouth", "rom_f0001"), "suspicious", "one", "mend it")
     states.set(("mouth", "rom_f0001"), "suspicious", "two", "mend that")
     states.add_unused([path, "char/sculpts/mouth/typo.obj"])
-    sculpts.write_states(tmp_path / "s.parquet", list(states.rows.values()))
-    rows = sculpts.read_states(tmp_path / "s.parquet")
+    sculpt_states.write(tmp_path / "s.parquet", list(states.rows.values()))
+    rows = sculpt_states.read(tmp_path / "s.parquet")
     assert [row["state"] for row in rows] == ["suspicious", "unused"]
     assert rows[0]["detail"] == "one; two"
     assert rows[0]["cure"] == "mend it; mend that"

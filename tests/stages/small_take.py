@@ -22,6 +22,16 @@ def write_obj(path, vertices, faces, colours=None):
             stream.write("f " + " ".join(str(index + 1) for index in face) + "\n")
 
 
+def words(options):
+    """Return the words of a command line: a flag and a value for each option."""
+    return [word for name, value in options.items() for word in (f"--{name}", value)]
+
+
+def changed_by(changes):
+    """Return options by keyword arguments: `sculpt_folder` is the flag `--sculpt-folder`."""
+    return {name.replace("_", "-"): value for name, value in changes.items()}
+
+
 class SmallTake:
     """A folder with everything that the stages from the rig on need."""
 
@@ -112,14 +122,16 @@ class SmallTake:
     def sculpts(self):
         return sorted(str(path) for path in (self.folder / "char" / "sculpts").rglob("*.*"))
 
-    def check_options(self, out):
+    def check_options(self, out, **changed):
         """Return the command line of check_sculpts."""
-        return [
-            "--key-shapes", f"{self.folder}/key_shapes.parquet",
-            "--neutral", f"{self.folder}/char/neutral.obj", "--sculpts", *self.sculpts,
-            "--sculpt-folder", f"{self.folder}/char/sculpts", "--character", "face",
-            "--sculpts-state", str(out),
-        ]  # fmt: skip
+        options = {
+            "key-shapes": f"{self.folder}/key_shapes.parquet",
+            "neutral": f"{self.folder}/char/neutral.obj",
+            "sculpt-folder": f"{self.folder}/char/sculpts",
+            "character": "face",
+            "states": str(out),
+        } | changed_by(changed)
+        return [*words(options), "--sculpts", *self.sculpts]
 
     def rig_options(self, **changed):
         """Return the command line of assemble_rig."""
@@ -133,22 +145,24 @@ class SmallTake:
             "pivot": "1 -8 0.5",
             "face-unit": "6.5",
             "rig": f"{self.folder}/rig.npz",
-        } | {name.replace("_", "-"): value for name, value in changed.items()}
-        pairs = [word for name, value in options.items() for word in (f"--{name}", value)]
-        return [*pairs, "--sculpts", *self.sculpts]
+        } | changed_by(changed)
+        return [*words(options), "--sculpts", *self.sculpts]
 
     def weights_options(self, rate="film", head="apply", rig="rig.npz"):
         """Return the command line of smooth_weights."""
-        return [
-            "--key-weights", f"{self.folder}/key_weights.parquet",
-            "--head-motion", f"{self.folder}/head_motion.parquet",
-            "--rig", f"{self.folder}/{rig}", "--rate", rate, "--head", head,
-            "--weights", f"{self.folder}/weights.parquet", "--csv", f"{self.folder}/weights.csv",
-        ]  # fmt: skip
+        options = {
+            "key-weights": f"{self.folder}/key_weights.parquet",
+            "head-motion": f"{self.folder}/head_motion.parquet",
+            "rig": f"{self.folder}/{rig}",
+            "rate": rate,
+            "head": head,
+            "weights": f"{self.folder}/weights.parquet",
+            "csv": f"{self.folder}/weights.csv",
+        }
+        return words(options)
 
     def bake_options(self):
         """Return the command line of bake_mesh."""
-        words = ["--rig", f"{self.folder}/rig.npz", "--weights", f"{self.folder}/weights.parquet"]
-        for kind in ("exr", "json", "pc2", "glb"):
-            words += [f"--{kind}", f"{self.folder}/mesh.{kind}"]
-        return words
+        options = {"rig": f"{self.folder}/rig.npz", "weights": f"{self.folder}/weights.parquet"}
+        options |= {kind: f"{self.folder}/mesh.{kind}" for kind in ("exr", "json", "pc2", "glb")}
+        return words(options)

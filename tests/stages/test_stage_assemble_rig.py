@@ -2,7 +2,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from small_take import REGIONS, SmallTake, write_obj
+from small_take import REGIONS, SmallTake, words, write_obj
 
 from stages import assemble_rig, bake_controls, smooth_weights
 from stages.files import errors, rig, series
@@ -108,10 +108,9 @@ def test_tables_of_controls_become_curves_by_the_same_formula(take):
     sculpts = [str(path) for path in sorted((folder / "sculpts").rglob("*.csv"))]
     assemble_rig.main([*options[:cut], *sculpts])
     smooth_weights.main(take.weights_options(head="none"))
-    bake_controls.main([
-        "--rig", f"{take.folder}/rig.npz", "--weights", f"{take.folder}/weights.parquet",
-        "--controls", f"{folder}/controls.parquet", "--csv", f"{folder}/controls.csv",
-    ])  # fmt: skip
+    options = {"rig": f"{take.folder}/rig.npz", "weights": f"{take.folder}/weights.parquet"}
+    options |= {"controls": f"{folder}/controls.parquet", "csv": f"{folder}/controls.csv"}
+    bake_controls.main(words(options))
     curves = series.read(folder / "controls.parquet", "controls").columns
     masks = {"mouth": [1, 0.5, 0], "eyes": [0, 0.5, 1]}
     for index, name in enumerate(names):

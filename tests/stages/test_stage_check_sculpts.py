@@ -5,7 +5,7 @@ import pytest
 from small_take import REGIONS, SmallTake, write_obj
 
 from stages import check_sculpts
-from stages.files import sculpts
+from stages.files import sculpt_states
 
 
 @pytest.fixture
@@ -16,7 +16,7 @@ def take(tmp_path):
 def states(take):
     out = take.folder / "sculpts.parquet"
     check_sculpts.main(take.check_options(out))
-    return {(row["region"], row["key_shape"]): row for row in sculpts.read_states(out)}
+    return {(row["region"], row["key_shape"]): row for row in sculpt_states.read(out)}
 
 
 def path_of(take, region, name):
@@ -123,14 +123,14 @@ def control_poses(take, error, seed):
         path.parent.mkdir(parents=True, exist_ok=True)
         rows = [f"{name},{value}" for name, value in zip(names, values, strict=True)]
         path.write_text("\n".join(["name,value", *rows]) + "\n")
-    options = take.check_options(take.folder / "sculpts.parquet")
-    first, last = options.index("--sculpts") + 1, options.index("--sculpt-folder")
+    out = take.folder / "sculpts.parquet"
+    options = take.check_options(
+        out, neutral=f"{folder}/neutral.csv", sculpt_folder=f"{folder}/sculpts"
+    )
+    cut = options.index("--sculpts") + 1
     sculpted = [str(path) for path in sorted((folder / "sculpts").rglob("*.csv"))]
-    options[first:last] = sculpted
-    options[options.index("--neutral") + 1] = f"{folder}/neutral.csv"
-    options[options.index("--sculpt-folder") + 1] = f"{folder}/sculpts"
-    check_sculpts.main(options)
-    return {(r["region"], r["key_shape"]): r for r in sculpts.read_states(options[-1])}
+    check_sculpts.main([*options[:cut], *sculpted])
+    return {(r["region"], r["key_shape"]): r for r in sculpt_states.read(out)}
 
 
 def test_controls_in_different_units_contradict_nothing(take):

@@ -3,7 +3,7 @@ from fractions import Fraction
 import av
 import numpy as np
 import pytest
-from small_take import FRAMES, RATE, SmallTake
+from small_take import FRAMES, RATE, SmallTake, words
 
 from stages import assemble_rig, bake_mesh, render_controls, render_preview, smooth_weights
 from stages.core import preview
@@ -38,21 +38,15 @@ def write_tracked(take, frames):
     series.write(path, "tracked", frames, frames / 30, columns, RATE)
 
 
-def options(take, *character):
-    return [
-        "--video", f"{take.folder}/film.mp4", "--tracked", f"{take.folder}/tracked.parquet",
-        "--point-set", f"{take.folder}/points.tsv", "--regions", f"{take.folder}/regions.tsv",
-        *character, "--shot", "talk", "--character", "face",
-        "--preview", f"{take.folder}/preview.mp4",
-    ]  # fmt: skip
+def options(take, **character):
+    files = {"video": "film.mp4", "tracked": "tracked.parquet", "point-set": "points.tsv"}
+    files |= {"regions": "regions.tsv", "preview": "preview.mp4"} | character
+    paths = {flag: f"{take.folder}/{name}" for flag, name in files.items()}
+    return words(paths | {"shot": "talk", "character": "face"})
 
 
 def mesh_options(take):
-    pairs = {"exr": "mesh.exr", "json": "mesh.json", "rig": "rig.npz"}
-    words = [
-        word for flag, name in pairs.items() for word in (f"--{flag}", f"{take.folder}/{name}")
-    ]
-    return options(take, *words)
+    return options(take, exr="mesh.exr", json="mesh.json", rig="rig.npz")
 
 
 def pictures(take):
@@ -112,10 +106,10 @@ def test_one_stray_frame_does_not_push_the_character_away(take, tmp_path):
 def test_another_rig_than_the_baked_one_is_refused(take, tmp_path):
     other = SmallTake(tmp_path, size=11.0)
     assemble_rig.main(other.rig_options())
-    words = mesh_options(take)
-    words[words.index("--rig") + 1] = f"{tmp_path}/rig.npz"
+    line = mesh_options(take)
+    line[line.index("--rig") + 1] = f"{tmp_path}/rig.npz"
     with pytest.raises(errors.InputError, match=r"mesh\.json: is not baked from"):
-        render_preview.main(words)
+        render_preview.main(line)
 
 
 def test_curves_run_beside_the_film(take):
@@ -123,7 +117,7 @@ def test_curves_run_beside_the_film(take):
     curves = {"jaw": np.sin(9 * time), "lid": time}
     path = take.folder / "controls.parquet"
     series.write(path, "controls", np.arange(FRAMES), time, curves, RATE)
-    render_controls.main(options(take, "--controls", str(path)))
+    render_controls.main(options(take, controls=path.name))
     shown = pictures(take)
     assert len(shown) == FRAMES
     right = [picture[: preview.HEIGHT, -preview.HEIGHT :].astype(int) for _, picture in shown]

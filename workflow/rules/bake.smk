@@ -31,7 +31,7 @@ rule check_sculpts:
         " --sculpts {input.sculpts:q}"
         " --sculpt-folder {params.sculpt_folder:q}"
         " --character {wildcards.character:q}"
-        " --sculpts-state {output.states:q}"
+        " --states {output.states:q}"
         " 2> {log:q}"
 
 

@@ -38,7 +38,7 @@ rule select_key_shapes:
         pca="results/actors/{actor}/pca.npz",
         regions="config/regions.tsv",
         region_settings="config/region_settings.tsv",
-        locks=ancient("config/key_shapes.tsv"),
+        key_shape_table=ancient("config/key_shapes.tsv"),
     output:
         key_shapes="results/actors/{actor}/key_shapes.parquet",
         errors="results/actors/{actor}/key_shape_errors.parquet",
@@ -61,7 +61,7 @@ rule select_key_shapes:
         " --shots {params.shots:q}"
         " --regions {input.regions:q}"
         " --region-settings {input.region_settings:q}"
-        " --key-shape-table {input.locks:q}"
+        " --key-shape-table {input.key_shape_table:q}"
         " --actor {wildcards.actor:q}"
         " --pca {input.pca:q}"
         " --min-confidence {params.min_confidence}"
@@ -114,7 +114,7 @@ rule write_brief:
         " --point-set {input.point_set:q}"
         " --regions {input.regions:q}"
         " --characters {params.characters:q}"
-        " --sculpt-states {input.states:q}"
+        " --states {input.states:q}"
         " --template {input.template:q}"
         " --page {output.page:q}"
         " --locks {output.locks:q}"
