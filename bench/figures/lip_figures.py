@@ -168,9 +168,15 @@ def _draw(rows, contours, caption, path):
             panel.set_axis_off()
             _lips(panel, cell, contours)
             drawn.text(
-                (column + 0.5) / columns, bottom - 0.03 / height, cell.words, va="top",
-                ha="center", size=9, color=look.INK, weight="bold" if cell.strong else "normal",
-            )  # fmt: skip
+                (column + 0.5) / columns,
+                bottom - 0.03 / height,
+                cell.words,
+                va="top",
+                ha="center",
+                size=9,
+                color=look.INK,
+                weight="bold" if cell.strong else "normal",
+            )
     look.save(whole, path)
 
 

@@ -38,9 +38,15 @@ def page(width: float, height: float, caption: str):
     backend_agg.FigureCanvasAgg(whole)
     drawn, text = whole.subfigures(2, 1, height_ratios=[height, below])
     text.text(
-        margin / width, 1 - margin / below / 2, "\n".join(lines),
-        va="top", ha="left", size=CAPTION_SIZE, color=INK, linespacing=1.35,
-    )  # fmt: skip
+        margin / width,
+        1 - margin / below / 2,
+        "\n".join(lines),
+        va="top",
+        ha="left",
+        size=CAPTION_SIZE,
+        color=INK,
+        linespacing=1.35,
+    )
     return whole, drawn
 
 

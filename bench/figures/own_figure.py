@@ -82,8 +82,9 @@ def _curves(panel, frame, errors, shown):
         panel.axvline(number, color=look.FAINT, lw=1.2, zorder=0)
     panel.set_title(
         f"Distance of the {MEASURED} character's vertices from the truth [% of its face unit]",
-        loc="left", **look.TITLE,
-    )  # fmt: skip
+        loc="left",
+        **look.TITLE,
+    )
     panel.set_xlabel("frame (grey lines: the frames above)")
     panel.legend(frameon=False, fontsize=9.5, ncols=3, loc="upper right")
     panel.spines[["top", "right"]].set_visible(False)

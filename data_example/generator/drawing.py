@@ -110,11 +110,23 @@ def _pieces(p):
 
 
 COLOURS = {
-    "face": PAPER, "outline": INK, "tuft": (0.80, 0.36, 0.14), "cheek": (0.96, 0.62, 0.55),
-    "white": (1, 1, 1), "pupil": INK, "glint": (1, 1, 1), "lid": (0.95, 0.78, 0.64), "lash": INK,
-    "rim": INK, "brow": (0.45, 0.18, 0.08), "nose": INK, "inside": (0.32, 0.06, 0.09),
-    "tongue": (0.88, 0.40, 0.42), "teeth": (1, 1, 0.97), "lip": (0.72, 0.20, 0.22),
-}  # fmt: skip
+    "face": PAPER,
+    "outline": INK,
+    "tuft": (0.80, 0.36, 0.14),
+    "cheek": (0.96, 0.62, 0.55),
+    "white": (1, 1, 1),
+    "pupil": INK,
+    "glint": (1, 1, 1),
+    "lid": (0.95, 0.78, 0.64),
+    "lash": INK,
+    "rim": INK,
+    "brow": (0.45, 0.18, 0.08),
+    "nose": INK,
+    "inside": (0.32, 0.06, 0.09),
+    "tongue": (0.88, 0.40, 0.42),
+    "teeth": (1, 1, 0.97),
+    "lip": (0.72, 0.20, 0.22),
+}
 
 
 def _mouth_share(neutral):

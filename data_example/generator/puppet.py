@@ -5,13 +5,12 @@ import numpy as np
 from data_example.generator import features
 
 GAINS = features.Gains(jaw=1.1)
-REGIONS = {
-    "mouth": ("jaw_turn_deg", "jaw_side_cm", "lip_width_cm", "lip_gap_cm", "lip_push_cm",
-              "corner_l_cm", "corner_r_cm", "lip_roll"),
-    "eyes": ("brow_l_cm", "brow_r_cm", "brow_tilt_l_deg", "brow_tilt_r_deg", "lid_l", "lid_r",
-             "lid_low_l", "lid_low_r"),
-    "pupils": ("eyes_yaw_deg", "eyes_pitch_deg"),
-}  # fmt: skip
+MOUTH = (
+    "jaw_turn_deg jaw_side_cm lip_width_cm lip_gap_cm lip_push_cm corner_l_cm corner_r_cm lip_roll"
+)
+EYES = "brow_l_cm brow_r_cm brow_tilt_l_deg brow_tilt_r_deg lid_l lid_r lid_low_l lid_low_r"
+PUPILS = "eyes_yaw_deg eyes_pitch_deg"
+REGIONS = {"mouth": MOUTH.split(), "eyes": EYES.split(), "pupils": PUPILS.split()}
 NAMES = tuple(name for names in REGIONS.values() for name in names)
 
 

@@ -156,12 +156,28 @@ def _scale(p):
 
 
 COLOURS = {
-    "case": WOOD, "panel": CREAM, "foot": WOOD_DARK, "handle": WOOD_DARK, "aerial": CHROME,
-    "ball": RED, "rim": BRASS, "white": (0.98, 0.97, 0.92), "iris": TEAL, "pupil": BLACK,
-    "glint": (1, 1, 1), "lid": (0.80, 0.52, 0.30), "lash": BLACK, "brow": WOOD_DARK,
-    "hollow": (0.16, 0.05, 0.05), "tongue": (0.80, 0.34, 0.33), "keys": (0.98, 0.96, 0.88),
-    "lip": RED, "scale": (0.20, 0.32, 0.30), "needle": (0.95, 0.35, 0.2), "knob": BRASS,
-}  # fmt: skip
+    "case": WOOD,
+    "panel": CREAM,
+    "foot": WOOD_DARK,
+    "handle": WOOD_DARK,
+    "aerial": CHROME,
+    "ball": RED,
+    "rim": BRASS,
+    "white": (0.98, 0.97, 0.92),
+    "iris": TEAL,
+    "pupil": BLACK,
+    "glint": (1, 1, 1),
+    "lid": (0.80, 0.52, 0.30),
+    "lash": BLACK,
+    "brow": WOOD_DARK,
+    "hollow": (0.16, 0.05, 0.05),
+    "tongue": (0.80, 0.34, 0.33),
+    "keys": (0.98, 0.96, 0.88),
+    "lip": RED,
+    "scale": (0.20, 0.32, 0.30),
+    "needle": (0.95, 0.35, 0.2),
+    "knob": BRASS,
+}
 
 
 def _pieces(p):

@@ -89,9 +89,17 @@ def draw(
     settings.setShadingType(cv2.RASTERIZE_SHADING_SHADED)
     settings.setCullingMode(cv2.RASTERIZE_CULLING_NONE)
     cv2.triangleRasterize(
-        vertices, triangles, colours, picture, depth, camera.world_to_camera,
-        FIELD_OF_VIEW, camera.near, camera.far, settings,
-    )  # fmt: skip
+        vertices,
+        triangles,
+        colours,
+        picture,
+        depth,
+        camera.world_to_camera,
+        FIELD_OF_VIEW,
+        camera.near,
+        camera.far,
+        settings,
+    )
     drawn = cv2.convertScaleAbs(picture, alpha=255.0)
     bright = cv2.cvtColor(drawn, cv2.COLOR_RGB2GRAY)
     jumps = cv2.morphologyEx(bright, cv2.MORPH_GRADIENT, np.ones((3, 3), np.uint8))

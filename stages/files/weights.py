@@ -101,6 +101,11 @@ def read(path: str | Path, names: list[str]) -> Weights:
     parts = np.split(values, np.cumsum([len(names), 4, 3, 1]), axis=1)
     shapes, rotation, translation, scale, confidence = parts
     return Weights(
-        read_series.frame, read_series.rate, shapes, rotation, translation,
-        scale[:, 0], confidence[:, 0],
-    )  # fmt: skip
+        read_series.frame,
+        read_series.rate,
+        shapes,
+        rotation,
+        translation,
+        scale[:, 0],
+        confidence[:, 0],
+    )

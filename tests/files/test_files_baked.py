@@ -20,9 +20,15 @@ def write_exr(folder, points, max_width=exr.MAX_WIDTH, first_frame=0):
             append(frame)
     bounds = np.stack([points.min(axis=(0, 1)), points.max(axis=(0, 1))])
     exr.write_json(
-        folder / "m.json", vertices, frames, first_frame, Fraction(30000, 1001), bounds,
-        {"unit": "cm"}, max_width,
-    )  # fmt: skip
+        folder / "m.json",
+        vertices,
+        frames,
+        first_frame,
+        Fraction(30000, 1001),
+        bounds,
+        {"unit": "cm"},
+        max_width,
+    )
     return exr.read_json(folder / "m.json")
 
 
