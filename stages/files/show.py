@@ -8,7 +8,7 @@ Cells are strings (shot `0010` keeps its zeros).
 from collections.abc import Sequence
 from pathlib import Path
 
-import jsonschema
+import jsonschema.protocols
 import yaml
 
 from stages.files import delimited, errors
@@ -41,7 +41,7 @@ def read(path: str | Path, schema_path: str | Path) -> Table:
 
 
 def _check_row(
-    path: str | Path, row: delimited.Row, validator: jsonschema.Validator, properties: dict
+    path: str | Path, row: delimited.Row, validator: jsonschema.protocols.Validator, properties: dict
 ) -> None:
     """Check the cells of one row that are not blank, and that no required one is blank."""
     filled = {column: cell for column, cell in row.cells.items() if cell}
