@@ -14,7 +14,6 @@ import numpy as np
 COMPONENTS = 12
 RIDGE = 1e-2
 ROUNDS = 30
-CAUTION = 0.5
 
 
 @dataclasses.dataclass(frozen=True)

@@ -55,7 +55,7 @@ def look(
 
 def describe(seen: Look, points: np.ndarray) -> np.ndarray:
     """Return the descriptors (P, F) round points (P, 2) [px of the picture], as judged."""
-    local = similarity.apply(similarity.invert(seen.pose), points)
+    local = similarity.unapply(seen.pose, points)
     return patch_features.describe(seen.channels, local, SPREADS[-1])
 
 
@@ -85,11 +85,11 @@ def refine(
     seen : the last look, in whose frame the last stages worked
     """
     seen = look(image, frame, points, SHRINK if descent.weights else 1.0)
-    local = similarity.apply(similarity.invert(seen.pose), points)
+    local = similarity.unapply(seen.pose, points)
     for stage in range(len(descent.weights)):
         if stage == 1:
             seen = look(image, frame, points)
-            local = similarity.apply(similarity.invert(seen.pose), points)
+            local = similarity.unapply(seen.pose, points)
         described = patch_features.describe(seen.channels, local, SPREADS[stage])
         for r, group in enumerate(groups):
             step = described[group].reshape(-1) @ descent.weights[stage][r]
@@ -141,19 +141,10 @@ def train(
     points, weights, biases = starts.copy(), [], []
     for stage, spread in enumerate(SPREADS):
         if stage < 2:
-            seen = [
-                look(one, frame, x, SHRINK if stage == 0 else 1.0)
-                for one, x in zip(images, points, strict=True)
-            ]
-            inverse = [similarity.invert(one.pose) for one in seen]
-            goal = np.array([similarity.apply(i, x) for i, x in zip(inverse, truth, strict=True)])
-            local = np.array([similarity.apply(i, x) for i, x in zip(inverse, points, strict=True)])
-        described = np.array(
-            [
-                patch_features.describe(one.channels, x, spread)
-                for one, x in zip(seen, local, strict=True)
-            ]
-        )
+            shrink = SHRINK if stage == 0 else 1.0
+            seen = [look(one, frame, x, shrink) for one, x in zip(images, points, strict=True)]
+            goal, local = _local(seen, truth), _local(seen, points)
+        described = _described(seen, local, spread)
         fitted = [
             _fit(described[:, group], (goal - local)[:, group], blocks, ridges[stage])
             for group in groups
@@ -166,6 +157,17 @@ def train(
             [similarity.apply(one.pose, x) for one, x in zip(seen, local, strict=True)]
         )
     return Descent(tuple(weights), tuple(biases)), points
+
+
+def _local(seen: Sequence[Look], points: np.ndarray) -> np.ndarray:
+    """Return points (N, P, 2) of pictures [px] as points of what was cut out of them."""
+    return np.array([similarity.unapply(one.pose, x) for one, x in zip(seen, points, strict=True)])
+
+
+def _described(seen: Sequence[Look], local: np.ndarray, spread: float) -> np.ndarray:
+    """Return the descriptors (N, P, F) round points (N, P, 2) of what was cut out."""
+    pairs = zip(seen, local, strict=True)
+    return np.array([patch_features.describe(one.channels, x, spread) for one, x in pairs])
 
 
 def _fit(

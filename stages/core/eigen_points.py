@@ -69,10 +69,7 @@ def train(
         [_pixels(image, pose, mask) for image, pose in zip(images, poses, strict=True)]
     ).astype(np.float64)
     points = np.array(
-        [
-            similarity.apply(similarity.invert(pose), shape).ravel()
-            for pose, shape in zip(poses, shapes, strict=True)
-        ]
+        [similarity.unapply(pose, shape).ravel() for pose, shape in zip(poses, shapes, strict=True)]
     )
     pixel_mean, point_mean = pixels.mean(axis=0), points.mean(axis=0)
     p, q = pixels - pixel_mean, points - point_mean

@@ -105,9 +105,7 @@ def starts(
     rng : draws them
     """
     shift, turn, scale = spread
-    upright = np.array(
-        [similarity.apply(similarity.fit_similarity(s, frame.points), s) for s in shapes]
-    )
+    upright = similarity.aligned(shapes, frame.points)
     found = []
     for source in sources:
         share = rng.random()

@@ -115,9 +115,7 @@ def _comparable(points: np.ndarray) -> np.ndarray:
     shapes = np.full((len(points), points[0].size), np.nan)
     if found.any():
         mean = similarity.mean_shape(points[found], 1.0, rounds=2)
-        aligned = np.array(
-            [similarity.apply(similarity.fit_similarity(p, mean), p) for p in points[found]]
-        ).reshape(found.sum(), -1)
+        aligned = similarity.aligned(points[found], mean).reshape(found.sum(), -1)
         aligned -= aligned.mean(axis=0)
         shapes[found] = aligned / (np.median(np.sqrt((aligned**2).sum(axis=1))) + 1e-12)
     return shapes

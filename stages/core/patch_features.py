@@ -10,7 +10,6 @@ import numpy as np
 LIGHT = np.array([0.299, 0.587, 0.114], np.float32)
 RED_GREEN = np.array([1.5, -1.5, 0.0], np.float32)
 DIRECTIONS = ((LIGHT, 6), (RED_GREEN, 4))
-CHANNELS = 10
 GRID = 5
 SPACING_PX = 5.0
 NEIGHBOURHOOD_PX = 25

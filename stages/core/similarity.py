@@ -1,11 +1,18 @@
 """Similarities and affine maps of the plane, as (2, 3) matrices `[A | t]`, and mean shapes."""
 
+from collections.abc import Iterable
+
 import numpy as np
 
 
 def apply(matrix: np.ndarray, points: np.ndarray) -> np.ndarray:
     """Return the points (..., 2) mapped by a (2, 3) matrix."""
     return points @ matrix[:, :2].T + matrix[:, 2]
+
+
+def unapply(matrix: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Return the points (..., 2) that a (2, 3) matrix maps to the given ones."""
+    return apply(invert(matrix), points)
 
 
 def invert(matrix: np.ndarray) -> np.ndarray:
@@ -77,6 +84,11 @@ def fit_affine(source: np.ndarray, target: np.ndarray) -> np.ndarray:
     return np.linalg.lstsq(rows, target, rcond=None)[0].T
 
 
+def aligned(shapes: Iterable[np.ndarray], target: np.ndarray) -> np.ndarray:
+    """Return shapes (N, P, 2), each brought by its similarity as near to a target as it comes."""
+    return np.array([apply(fit_similarity(shape, target), shape) for shape in shapes])
+
+
 def mean_shape(shapes: np.ndarray, radius: float, rounds: int = 10) -> np.ndarray:
     """Average shapes up to similarity (generalised Procrustes).
 
@@ -92,9 +104,9 @@ def mean_shape(shapes: np.ndarray, radius: float, rounds: int = 10) -> np.ndarra
     """
     mean = shapes[0]
     for _ in range(rounds):
-        aligned = np.mean([apply(fit_similarity(shape, mean), shape) for shape in shapes], axis=0)
-        aligned = apply(fit_similarity(aligned, shapes[0]), aligned)
-        mean = aligned - aligned.mean(axis=0)
+        average = aligned(shapes, mean).mean(axis=0)
+        upright = apply(fit_similarity(average, shapes[0]), average)
+        mean = upright - upright.mean(axis=0)
         mean *= radius / np.sqrt((mean**2).sum(axis=1).mean())
     return mean
 

@@ -94,7 +94,8 @@ def train(
     cascade = descent.Descent((), ())
     images, varied = faces.images, faces.shapes
     if method == "eigen_points_descent":
-        spread = face_variations.group_spread(_upright(faces, frame), groups, GROUP_LIMITS)
+        upright = similarity.aligned(faces.shapes[: faces.labelled], frame.points)
+        spread = face_variations.group_spread(upright, groups, GROUP_LIMITS)
         images, varied = _bent(faces, groups, spread, rng)
         cascade = _cascade(images, varied, faces.labelled, frame, groups, spread, rng)
     eigen = eigen_points.train(images, varied, frame, COMPONENTS)
@@ -123,10 +124,7 @@ def _faces(
         ]
     )
     local = np.array(
-        [
-            similarity.apply(similarity.invert(pose), shape)
-            for pose, shape in zip(poses, shapes, strict=True)
-        ]
+        [similarity.unapply(pose, shape) for pose, shape in zip(poses, shapes, strict=True)]
     )
     morphs, bent, parents = morph.enlarge(images, local, FRACTIONS, MORPH_LIMIT, rng)
     own = np.arange(len(shapes))
@@ -135,16 +133,6 @@ def _faces(
         np.concatenate([local, bent]),
         np.concatenate([np.stack([own, own], axis=1), parents]),
         len(shapes),
-    )
-
-
-def _upright(faces: Faces, frame: face_frame.FaceFrame) -> np.ndarray:
-    """Return the labelled shapes (N, P, 2) aligned to the mean shape."""
-    return np.array(
-        [
-            similarity.apply(similarity.fit_similarity(shape, frame.points), shape)
-            for shape in faces.shapes[: faces.labelled]
-        ]
     )
 
 
