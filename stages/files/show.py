@@ -41,7 +41,10 @@ def read(path: str | Path, schema_path: str | Path) -> Table:
 
 
 def _check_row(
-    path: str | Path, row: delimited.Row, validator: jsonschema.protocols.Validator, properties: dict
+    path: str | Path,
+    row: delimited.Row,
+    validator: jsonschema.protocols.Validator,
+    properties: dict,
 ) -> None:
     """Check the cells of one row that are not blank, and that no required one is blank."""
     filled = {column: cell for column, cell in row.cells.items() if cell}
