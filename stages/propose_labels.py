@@ -11,11 +11,10 @@ import numpy as np
 
 from stages import cli
 from stages.core import label_proposals
-from stages.files import atomic, delimited, errors, labels, point_set, series
+from stages.files import errors, labels, point_set, proposal_table, series
 
 DOUBTFUL = 0.7
 UNUSUAL = 1.3
-COLUMNS = ("rank", "shot", "frame", "time_s", "confidence", "residual", "reason")
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -38,15 +37,15 @@ def main(argv: Sequence[str]) -> None:
     if len(arguments.labels) != len(arguments.labelled_shots):
         raise ValueError("--labels and --labelled-shots: one of each for every labelled shot")
     done = {
-        (shot, delimited.whole_number(path, row, "frame"))
+        (shot, frame)
         for shot, path in zip(arguments.labelled_shots, arguments.labels, strict=True)
-        for row in delimited.read(path, labels.COLUMNS, ("corner",), separator=",")
+        for frame in labels.labelled_frames(path)
     }
     tracked, contours, frames = _read(arguments.tracked)
     places = [(arguments.shots[s], int(f)) for s, f in zip(tracked.shot, frames, strict=True)]
     known = np.array([place in done for place in places])
     ratio = label_proposals.unusual(tracked.residual)
-    lines = ["\t".join(COLUMNS)]
+    rows = []
     for number, t in enumerate(label_proposals.rank(tracked, known, arguments.count), start=1):
         shot, frame = places[t]
         cells = [
@@ -58,9 +57,8 @@ def main(argv: Sequence[str]) -> None:
             f"{ratio[t]:.2f}" if np.isfinite(tracked.residual[t]) else "",
             _reason(tracked, contours, ratio, t),
         ]
-        lines.append("\t".join(cells))
-    with atomic.replacing(arguments.proposals) as temporary:
-        temporary.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        rows.append(cells)
+    proposal_table.write(arguments.proposals, rows)
 
 
 def _read(paths: Sequence[str]) -> tuple[label_proposals.Tracked, list[str], np.ndarray]:

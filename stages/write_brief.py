@@ -15,6 +15,7 @@ from stages.files import (
     atomic,
     face_pictures,
     key_shapes,
+    lock_table,
     outline,
     point_set,
     regions,
@@ -22,8 +23,6 @@ from stages.files import (
     series,
     web_page,
 )
-
-LOCK_COLUMNS = ("actor", "region", "shot", "frame", "state")
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -57,7 +56,8 @@ def main(argv: Sequence[str]) -> None:
         character: {(row["region"], row["key_shape"]): row for row in sculpt_states.read(path)}
         for character, path in zip(arguments.characters, arguments.states, strict=True)
     }
-    locks = _lock_table(arguments.actor, shapes)
+    rows = [(shape.region, shape.shot, shape.frame) for shape in shapes]
+    locks = lock_table.locking(arguments.actor, rows)
     context = {
         "actor": arguments.actor,
         "characters": [_summary(name, rows.values()) for name, rows in states.items()],
@@ -67,13 +67,6 @@ def main(argv: Sequence[str]) -> None:
     with atomic.replacing(arguments.locks) as temporary:
         temporary.write_text(locks, encoding="utf-8")
     web_page.write(arguments.page, arguments.template, context)
-
-
-def _lock_table(actor: str, shapes: Iterable[key_shapes.KeyShape]) -> str:
-    """Return the rows of key_shapes.tsv that lock these key shapes."""
-    rows = [LOCK_COLUMNS]
-    rows += [(actor, shape.region, shape.shot, str(shape.frame), "locked") for shape in shapes]
-    return "".join("\t".join(row) + "\n" for row in rows)
 
 
 def _summary(name: str, rows: Iterable[dict]) -> dict:

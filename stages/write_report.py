@@ -5,7 +5,6 @@ missing is named with the line in which its stage failed.
 """
 
 import argparse
-import csv
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -13,7 +12,7 @@ import numpy as np
 
 from stages import cli
 from stages.core import head_leak
-from stages.files import series, web_page
+from stages.files import proposal_table, series, web_page
 
 DELIVERIES = ("mesh.glb", "mesh.exr", "mesh.pc2", "controls.csv", "weights.csv")
 MOTION = ("rotation.z", "translation.x", "translation.y", "scale")
@@ -135,9 +134,8 @@ def _proposals(results: Path, sessions: Sequence[str]) -> list[dict]:
     for session in sessions:
         path = results / "sessions" / session / "label_proposals.tsv"
         if path.is_file():
-            lines = path.read_text(encoding="utf-8").splitlines()
-            read = csv.DictReader(lines, delimiter="\t")
-            rows += [{"session": session} | row for row in read][:PROPOSALS]
+            read = proposal_table.read(path)[:PROPOSALS]
+            rows += [{"session": session} | row for row in read]
     return rows
 
 

@@ -2,10 +2,10 @@
 
 import csv
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from stages.files import errors
+from stages.files import atomic, errors
 
 
 @dataclasses.dataclass(frozen=True)
@@ -74,6 +74,17 @@ def _check_header(
             raise errors.InputError(path, f"column '{name}' is missing: add it to the header")
 
 
+def write(path: str | Path, columns: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
+    """Write a tab-separated table whose first row names the columns."""
+    with atomic.replacing(path) as temporary:
+        temporary.write_text(as_text(columns, rows), encoding="utf-8")
+
+
+def as_text(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Return the text of a tab-separated table."""
+    return "".join("\t".join(cells) + "\n" for cells in (columns, *rows))
+
+
 def number(path: str | Path, row: Row, column: str) -> float:
     """Return a cell as a finite number, or name its place."""
     try:
@@ -81,7 +92,9 @@ def number(path: str | Path, row: Row, column: str) -> float:
     except ValueError:
         value = float("nan")
     if not abs(value) < float("inf"):
-        message = f"line {row.line}, column {column}: '{row.cells[column]}' is not a number"
+        message = (
+            f"line {row.line}, column {column}: '{row.cells[column]}' is not a number: write one"
+        )
         raise errors.InputError(path, message)
     return value
 
@@ -90,6 +103,6 @@ def whole_number(path: str | Path, row: Row, column: str) -> int:
     """Return a cell as a whole number from 0, or name its place."""
     text = row.cells[column]
     if not text.isdecimal():
-        message = f"line {row.line}, column {column}: '{text}' is not a whole number"
+        message = f"line {row.line}, column {column}: '{text}' is not a whole number: write one"
         raise errors.InputError(path, message)
     return int(text)

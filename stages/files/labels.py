@@ -14,6 +14,7 @@ import numpy as np
 from stages.files import delimited, errors, point_set
 
 COLUMNS = ("frame", "point", "x_px", "y_px")
+OPTIONAL_COLUMNS = ("corner",)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -40,7 +41,7 @@ def read(path: str | Path, contours: Sequence[point_set.Contour]) -> dict[int, d
     """
     known = {contour.name: contour for contour in contours}
     drawn: dict[int, dict[str, dict[int, tuple[float, float, bool]]]] = {}
-    for row in delimited.read(path, COLUMNS, ("corner",), separator=","):
+    for row in delimited.read(path, COLUMNS, OPTIONAL_COLUMNS, separator=","):
         frame = delimited.whole_number(path, row, "frame")
         point = row.cells["point"]
         name = point if point in known else point_set.contour_of(point)
@@ -50,7 +51,9 @@ def read(path: str | Path, contours: Sequence[point_set.Contour]) -> dict[int, d
         index = 0 if point == name else int(point.rpartition("_")[2])
         places = drawn.setdefault(frame, {}).setdefault(name, {})
         if index in places:
-            raise errors.InputError(path, f"line {row.line}: frame {frame} has {point} twice")
+            raise errors.InputError(
+                path, f"line {row.line}: frame {frame} has {point} twice: remove one"
+            )
         x, y = (delimited.number(path, row, column) for column in ("x_px", "y_px"))
         places[index] = (x, y, row.cells.get("corner", "") == "1")
     labelled = {
@@ -60,6 +63,18 @@ def read(path: str | Path, contours: Sequence[point_set.Contour]) -> dict[int, d
     for frame, found in labelled.items():
         _check_frame(path, frame, found, known)
     return labelled
+
+
+def labelled_frames(path: str | Path) -> set[int]:
+    """Return the numbers of the frames that have labels, whatever their contours.
+
+    Raises
+    ------
+    errors.InputError
+        if the table cannot be read
+    """
+    rows = delimited.read(path, COLUMNS, OPTIONAL_COLUMNS, separator=",")
+    return {delimited.whole_number(path, row, "frame") for row in rows}
 
 
 def _polyline(places: dict[int, tuple[float, float, bool]]) -> Polyline:
@@ -86,4 +101,5 @@ def _check_frame(
             )
             raise errors.InputError(path, message)
         if contour.kind != "point" and len(found[name].points) < 2:
-            raise errors.InputError(path, f"frame {frame}: contour {name} has only one point")
+            message = f"frame {frame}: contour {name} has only one point: label the others"
+            raise errors.InputError(path, message)

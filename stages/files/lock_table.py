@@ -1,6 +1,6 @@
 """`key_shapes.tsv`: frames that an artist locked as key shapes, or banned."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from stages.files import delimited, errors
@@ -9,6 +9,12 @@ COLUMNS = ("actor", "region", "shot", "frame", "state")
 STATES = ("locked", "banned")
 
 Locks = dict[str, dict[str, list[int]]]
+
+
+def locking(actor: str, shapes: Iterable[tuple[str, str, int]]) -> str:
+    """Return the text of a table that locks key shapes of an actor, (region, shot, frame) each."""
+    rows = [(actor, region, shot, str(frame), STATES[0]) for region, shot, frame in shapes]
+    return delimited.as_text(COLUMNS, rows)
 
 
 def read(path: str | Path, actor: str, place: Mapping[tuple[str, int], int]) -> Locks:
