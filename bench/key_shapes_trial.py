@@ -3,8 +3,8 @@
 `python -m bench.key_shapes_trial --data FOLDER`, the folder as in `rig_take`. Errors are in mm,
 root mean square per marker: first on the frames that were chosen from, every tenth of the take;
 then with the take cut into 20 blocks of time, each held out once in five turns and the key shapes
-chosen from the others; last in the target, per vertex of a character sculpted without error, on
-the held-out blocks.
+chosen from the others; last in the target, the mean distance of the vertices of a character
+sculpted without error, on the held-out blocks.
 """
 
 import argparse
@@ -48,17 +48,14 @@ def main() -> None:
 
 def _mean(actor, parts, method, count, solve, character=None):
     """Return the errors of all turns together [mm]: training, held out and in the target."""
-    squares = [[], [], []]
-    for seen, unseen in parts:
-        found = _squares(actor, seen, unseen, method, count, solve, character)
-        for row, part in zip(squares, found, strict=True):
-            row.append(part)
-    whole = [np.concatenate(row) for row in squares]
-    return [float(np.sqrt(row.mean())) for row in whole if len(row)]
+    found = [_errors(actor, *part, method, count, solve, character) for part in parts]
+    seen, unseen, target = (np.concatenate(row) for row in zip(*found, strict=True))
+    means = [float(np.sqrt(np.mean(squares))) for squares in (seen, unseen)]
+    return [*means, float(np.mean(target))] if len(target) else means
 
 
-def _squares(actor, seen, unseen, method, count, solve, character):
-    """Return squared errors of every frame: of the seen, of the unseen, and in the target."""
+def _errors(actor, seen, unseen, method, count, solve, character):
+    """Return squared errors of the seen and the unseen frames, and distances in the target."""
     markers = len(actor.neutral)
     offsets = rig_take.deltas_of(actor) / np.sqrt(markers)
     neutral = actor.neutral.ravel() / np.sqrt(markers)
@@ -76,7 +73,8 @@ def _squares(actor, seen, unseen, method, count, solve, character):
     if character is None:
         return [*squares, np.zeros(0)]
     wrong = (solution.weights @ mix - unseen) @ rig_take.deltas_of(character)
-    return [*squares, np.sum(wrong**2, axis=1) / len(character.neutral)]
+    distances = np.linalg.norm(wrong.reshape(len(unseen), -1, 3), axis=2)
+    return [*squares, distances.mean(axis=1)]
 
 
 def _choose(offsets, neutral, method, count):
