@@ -101,7 +101,9 @@ class Show:
 
 
 @pytest.fixture(name="made")
-def _made(tmp_path):
+def _made(tmp_path, monkeypatch):
+    # few counts are measured, for speed
+    monkeypatch.setattr(select_key_shapes, "COUNTS", (2, 4))
     return Show(tmp_path)
 
 
