@@ -86,7 +86,7 @@ def table(data: Path) -> list[str]:
     films = {path.stem: path for path in sorted(data.iterdir()) if path.suffix in {".mpg", ".mp4"}}
     pictures, shapes = [], []
     for clip, frames in labelled.items():
-        shown = film.frames_at(films[clip], frames)
+        shown = film.frames_at(films[clip], frames, data / "labels.csv")
         pictures += [shown[frame] for frame in frames]
         shapes += list(frames.values())
     owners = [point_set.contour_of(name) for name in names]

@@ -74,8 +74,9 @@ def _neutral(arguments: argparse.Namespace, names: Sequence[str]) -> tuple[np.nd
     """Return the neutral's points (P, 2) and its two unit points (2, 2) [px]."""
     source = series.read(arguments.neutral, "performance")
     if arguments.neutral_frame >= len(source.frame):
-        message = f"the neutral frame {arguments.neutral_frame} is beyond the last frame"
-        raise errors.InputError(arguments.neutral, f"{message} {len(source.frame) - 1}")
+        message = f"neutral frame {arguments.neutral_frame} is beyond the last frame"
+        cure = "correct neutral_frame in sessions.tsv"
+        raise errors.InputError(arguments.neutral, f"{message} {len(source.frame) - 1}: {cure}")
     neutral = series.stack(source, arguments.neutral, names)[arguments.neutral_frame]
     if not np.isfinite(neutral).all():
         message = f"the face was not tracked on the neutral frame {arguments.neutral_frame}"

@@ -29,12 +29,10 @@ def main(argv: Sequence[str]) -> None:
     masked = compose.mask_deltas(character.deltas, character.masks, character.mask_index)
     values = character.neutral[:, 0] + played.shapes @ masked[:, :, 0]
     columns = dict(zip(character.controls, values.T, strict=True))
-    time_s = played.frame * played.rate.denominator / played.rate.numerator
     sources = [options.rig, options.weights]
-    series.write(
-        options.controls, "controls", played.frame, time_s, columns, played.rate, {}, sources
-    )
-    weights.write_csv(options.csv, played.frame, time_s, columns)
+    frame, time_s, rate = played.frame, played.time_s, played.rate
+    series.write(options.controls, "controls", frame, time_s, columns, rate, {}, sources)
+    weights.write_csv(options.csv, frame, time_s, columns)
 
 
 if __name__ == "__main__":

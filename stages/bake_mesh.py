@@ -27,7 +27,7 @@ def _motion(character: rig.Rig, played: weights.Weights) -> gltf.Motion:
     """Turn the head motion into the character's axes and unit."""
     axes = head_transform.face_axes(character.up_axis)
     return gltf.Motion(
-        times=played.frame * played.rate.denominator / played.rate.numerator,
+        times=played.time_s,
         weights=played.shapes,
         rotation=head_transform.turned_quaternions(played.rotation, axes),
         translation=character.face_unit * played.translation @ axes.T,

@@ -6,7 +6,7 @@ morphed into each other, and pixels and points are analysed together (CB02 secti
 """
 
 import argparse
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 import cv2
 import numpy as np
@@ -46,7 +46,7 @@ def main(argv: Sequence[str]) -> None:
     corners: dict[str, int] = {}
     for shot, video, table in zip(arguments.shots, arguments.videos, arguments.labels, strict=True):
         labelled = labels.read(table, point_contours)
-        shown = _pictures(video, table, labelled)
+        shown = film.frames_at(video, labelled, table)
         for frame, drawn in labelled.items():
             _check_corners(table, frame, drawn, corners)
             found, shape = _shape(table, frame, drawn, point_contours)
@@ -80,18 +80,6 @@ def main(argv: Sequence[str]) -> None:
         },
         [*arguments.videos, *arguments.labels, arguments.point_set],
     )
-
-
-def _pictures(video: str, table: str, frames: Iterable[int]) -> dict[int, np.ndarray]:
-    """Return the labelled frames' pictures."""
-    wanted, found, last = set(frames), {}, -1
-    for last, (_, picture) in enumerate(film.read_frames(video)):
-        if last in wanted:
-            found[last] = picture
-    if missing := sorted(wanted - set(found)):
-        message = f"frame {missing[0]} does not exist: {video} ends with frame {last}"
-        raise errors.InputError(table, f"{message}; correct the frame, or give the labelled film")
-    return found
 
 
 def _check_corners(

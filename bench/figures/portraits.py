@@ -43,7 +43,8 @@ def film_path(show: Path, shot: str) -> Path:
 
 def film_pictures(show: Path, shot: str, frames: list[int]) -> list[np.ndarray]:
     """Return pictures of the example's films, whose rate is constant."""
-    found = film.frames_at(film_path(show, shot), frames)
+    named_in = region_frames.expression_path(show, shot)
+    found = film.frames_at(film_path(show, shot), frames, named_in)
     return [found[frame] for frame in frames]
 
 

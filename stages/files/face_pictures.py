@@ -34,7 +34,7 @@ def cut_out(
     points = series.stack(tracked, tracked_path, series.point_names(tracked))
     times = [float(frame / tracked.rate) for frame in frames]
     rows = [int(np.abs(tracked.time_s - time).argmin()) for time in times]
-    images = film.frames_at(video, [int(tracked.frame[row]) for row in rows])
+    images = film.frames_at(video, [int(tracked.frame[row]) for row in rows], tracked_path)
     return {
         frame: _square(images[int(tracked.frame[row])], points[row])
         for frame, row in zip(frames, rows, strict=True)

@@ -106,23 +106,27 @@ def _check_whole(path: str | Path, stream: av.VideoStream, count: int, last: flo
             raise errors.InputError(path, message)
 
 
-def frames_at(path: str | Path, indices: Iterable[int]) -> dict[int, np.ndarray]:
+def frames_at(
+    path: str | Path, indices: Iterable[int], named_in: str | Path
+) -> dict[int, np.ndarray]:
     """Return the pictures at the given frame numbers, counted from 0.
+
+    Parameters
+    ----------
+    path : the film
+    indices : frame numbers
+    named_in : the file that names them, for the error
 
     Raises
     ------
     errors.InputError
         if the film ends before one of them
     """
-    wanted = set(indices)
-    found = {}
-    last = -1
-    for number, (_, picture) in enumerate(read_frames(path)):
-        last = number
-        if number in wanted:
-            found[number] = picture
-    missing = sorted(wanted - set(found))
-    if missing:
-        message = f"frame {missing[0]} does not exist: the film ends with frame {last}"
-        raise errors.InputError(path, message)
+    wanted, found, last = set(indices), {}, -1
+    for last, (_, picture) in enumerate(read_frames(path)):
+        if last in wanted:
+            found[last] = picture
+    if missing := sorted(wanted - set(found)):
+        message = f"frame {missing[0]} does not exist: {path} ends with frame {last}"
+        raise errors.InputError(named_in, f"{message}; correct the frame, or give its own film")
     return found

@@ -54,7 +54,8 @@ def read(path: str | Path, kind: str) -> tuple[dict[str, np.ndarray], dict]:
         with np.load(path, allow_pickle=False) as archive:
             arrays = {name: archive[name] for name in archive.files}
     except (ValueError, zipfile.BadZipFile, EOFError) as error:
-        raise errors.InputError(path, f"no model file: {error}") from error
+        message = f"no model file ({error}): delete it and run again"
+        raise errors.InputError(path, message) from error
     meta = json.loads(str(arrays.pop("meta", "{}")))
     provenance.check(path, meta, kind)
     return arrays, meta

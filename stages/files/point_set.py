@@ -43,7 +43,9 @@ def read(path: str | Path) -> list[Contour]:
             message = f"line {row.line}, column kind: '{kind}' is none of {', '.join(KINDS)}"
             raise errors.InputError(path, message)
         if name in [contour.name for contour in contours]:
-            raise errors.InputError(path, f"line {row.line}: contour {name} stands twice")
+            raise errors.InputError(
+                path, f"line {row.line}: contour {name} stands twice: remove one"
+            )
         wanted = delimited.whole_number(path, row, "count") if count else None
         if wanted is not None and wanted < (1 if kind == "point" else 2):
             message = f"line {row.line}, column count: {wanted} points are too few for {kind}"

@@ -51,7 +51,8 @@ def check(path: str | Path, meta: dict, kind: str) -> None:
     """
     found = meta.get("kind", "nothing")
     if found != kind:
-        raise errors.InputError(path, f"this is a file of kind '{found}', expected '{kind}'")
+        message = f"this is a file of kind '{found}', expected '{kind}': correct the path"
+        raise errors.InputError(path, message)
     version = meta.get("layout_version")
     if version != LAYOUT_VERSION:
         message = (

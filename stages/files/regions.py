@@ -27,9 +27,13 @@ def read(path: str | Path) -> Regions:
         region, point = row.cells["region"], row.cells["point"]
         weight = delimited.number(path, row, "weight") if row.cells["weight"] else 1.0
         if weight < 0:
-            raise errors.InputError(path, f"line {row.line}, column weight: {weight} is negative")
+            raise errors.InputError(
+                path, f"line {row.line}, column weight: {weight} is negative: give 0 or more"
+            )
         if point in regions.setdefault(region, {}):
-            raise errors.InputError(path, f"line {row.line}: {point} stands twice in {region}")
+            raise errors.InputError(
+                path, f"line {row.line}: {point} stands twice in {region}: remove one"
+            )
         regions[region][point] = weight
     if not regions:
         raise errors.InputError(path, "names no region: add a row for each point or contour")
@@ -70,5 +74,7 @@ def select(
         weights[chosen] = rows[name]
     indices = np.flatnonzero(weights)
     if len(indices) == 0:
-        raise errors.InputError(path, f"region {region}: no point has a weight above zero")
+        raise errors.InputError(
+            path, f"region {region}: no point has a weight above zero: give one"
+        )
     return indices, weights[indices]

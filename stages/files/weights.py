@@ -43,6 +43,11 @@ class Weights:
     scale: np.ndarray
     confidence: np.ndarray
 
+    @property
+    def time_s(self) -> np.ndarray:
+        """The times of the frames (T,) [s]."""
+        return _time_s(self.frame, self.rate)
+
 
 def head_columns(rotation: np.ndarray, rest: np.ndarray) -> dict[str, np.ndarray]:
     """Name the columns of (T, 4) rotations and of (T, 4) translations with scales."""
@@ -59,9 +64,14 @@ def write(
     sources: Iterable[str | Path] = (),
 ) -> None:
     """Write both files; columns are (T,) float arrays by name."""
-    time_s = frame * rate.denominator / rate.numerator
+    time_s = _time_s(frame, rate)
     series.write(path, KIND, frame, time_s, columns, rate, {}, sources)
     write_csv(csv_path, frame, time_s, columns)
+
+
+def _time_s(frame: np.ndarray, rate: Fraction) -> np.ndarray:
+    """Return the times of frames of a rate [s], each rounded once."""
+    return frame * rate.denominator / rate.numerator
 
 
 def write_csv(

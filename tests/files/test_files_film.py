@@ -37,9 +37,11 @@ def test_pictures_and_times_come_in_order_from_zero(tmp_path):
 
 def test_single_frames_and_one_beyond_the_end(tmp_path):
     path = write_film(tmp_path / "a.mp4")
-    assert abs(film.frames_at(path, [7, 31])[31][30:].mean() - 62) < 3
-    with pytest.raises(errors.InputError, match="frame 40 does not exist: .* frame 39"):
-        film.frames_at(path, [40])
+    assert abs(film.frames_at(path, [7, 31], "labels.csv")[31][30:].mean() - 62) < 3
+    with pytest.raises(
+        errors.InputError, match=r"labels\.csv: frame 40 does not exist: .* frame 39"
+    ):
+        film.frames_at(path, [40], "labels.csv")
 
 
 @pytest.mark.parametrize("faststart", [False, True])
