@@ -77,14 +77,14 @@ def basis_expressions(wildcards):
     return expand("results/shots/{shot}/expression.parquet", shot=basis_shots(wildcards))
 
 
-def basis_films(wildcards):
-    """Return the films of an actor's basis shots that exist."""
-    return present([row["video"] for row in shots_of(wildcards.actor, basis=["yes"])])
-
-
 def basis_film_paths(wildcards):
     """Return the films of an actor's basis shots."""
     return [row["video"] for row in shots_of(wildcards.actor, basis=["yes"])]
+
+
+def basis_films(wildcards):
+    """Return the films of an actor's basis shots that exist."""
+    return present(basis_film_paths(wildcards))
 
 
 def basis_tracked(wildcards):
