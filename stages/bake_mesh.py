@@ -2,12 +2,13 @@
 
 import argparse
 import contextlib
+import dataclasses
 from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from stages import cli
-from stages.core import compose, head_transform, polygons
+from stages.core import compose, head_transform, morph_sides, polygons
 from stages.files import atomic, errors, exr, gltf, pc2, rig, weights
 
 
@@ -35,11 +36,16 @@ def _motion(character: rig.Rig, played: weights.Weights) -> gltf.Motion:
     )
 
 
-def _surface(character: rig.Rig, masked: np.ndarray) -> gltf.Surface:
-    """Cut the polygons into triangles and find the normals of the neutral."""
+def _surface(character: rig.Rig, masked: np.ndarray, sides: morph_sides.Sides) -> gltf.Surface:
+    """Cut the polygons into triangles, find the normals of the neutral, name the targets."""
     triangles = polygons.triangulate(character.sizes, character.corners)
     normals = polygons.vertex_normals(character.neutral, triangles)
-    return gltf.Surface(triangles, normals, masked)
+    names = [
+        character.names[shape] + ("" if gain > 0 else ".minus")
+        for shape, gain in zip(sides.shape, sides.gain, strict=True)
+    ]
+    targets = sides.gain[:, None, None] * masked[sides.shape]
+    return gltf.Surface(triangles, normals, names, sides.gain, targets)
 
 
 def _positions(character: rig.Rig, masked: np.ndarray, motion: gltf.Motion) -> Iterator[np.ndarray]:
@@ -94,7 +100,9 @@ def main(argv: Sequence[str]) -> None:
         form = _form(character, masked, motion)
         bounds = np.stack([low, high])
         exr.write_json(paths[1], vertices, frames, first, played.rate, bounds, form)
-        gltf.write(paths[3], character, _surface(character, masked), motion)
+        sides = morph_sides.split(motion.weights)
+        sided = dataclasses.replace(motion, weights=sides.weights)
+        gltf.write(paths[3], character, _surface(character, masked, sides), sided)
 
 
 if __name__ == "__main__":

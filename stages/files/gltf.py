@@ -3,8 +3,10 @@
 Nodes: `character` (constant: the file's axes and unit to glTF's y up and metres) > `head`
 (animated: translation pivot + face_unit t, rotation, scale) > `mesh` (translation -pivot, and
 animated weights). Below `character`, evaluating gives exactly the positions of `mesh.exr`.
-One morph target for each shape that is not zero under its mask, as a sparse accessor; its name is
-in `mesh.extras.targetNames`. Vertices are the file's, one to one; polygons are cut into fans.
+One morph target for each shape that is not zero under its mask, and a second, `<name>.minus`, where
+its weight goes below zero; scaled so that weights stay within 0 and 1, since packages clamp them
+(`mesh.extras.gains` says by how much). Targets are sparse accessors, their names stand in
+`mesh.extras.targetNames`. Vertices are the file's, one to one; polygons are cut into fans.
 """
 
 import dataclasses
@@ -27,12 +29,16 @@ class Surface:
     ----------
     triangles : (N, 3) int array
     normals : (V, 3) float array, of the neutral
-    masked : (K, V, 3) float array, the shapes' differences under their masks [unit]
+    names : M names of morph targets
+    gains : (M,) float array, a target's differences are so many times its shape's
+    targets : (M, V, 3) float array, differences from the neutral [unit]
     """
 
     triangles: np.ndarray
     normals: np.ndarray
-    masked: np.ndarray
+    names: list[str]
+    gains: np.ndarray
+    targets: np.ndarray
 
 
 @dataclasses.dataclass(frozen=True)
@@ -42,7 +48,7 @@ class Motion:
     Attributes
     ----------
     times : (T,) float array [s]
-    weights : (T, K) float array
+    weights : (T, M) float array, of the morph targets
     rotation : (T, 4) float array, quaternions x, y, z, w of length one
     translation : (T, 3) float array [unit]
     scale : (T,) float array
@@ -134,7 +140,7 @@ def write(path: str | Path, character: rig.Rig, surface: Surface, motion: Motion
     motion : how it moves
     """
     buffer = _Buffer()
-    used = np.flatnonzero(surface.masked.astype(np.float32).any(axis=(1, 2)))
+    used = np.flatnonzero(surface.targets.astype(np.float32).any(axis=(1, 2)))
     document = gltf.GLTF2(
         scene=0,
         scenes=[gltf.Scene(nodes=[0])],
@@ -190,14 +196,17 @@ def _mesh(buffer: _Buffer, character: rig.Rig, surface: Surface, used: np.ndarra
         attributes=attributes,
         indices=buffer.indices(surface.triangles),
         material=0,
-        targets=[{"POSITION": buffer.sparse(surface.masked[shape])} for shape in used],
+        targets=[{"POSITION": buffer.sparse(surface.targets[row])} for row in used],
     )
-    names = [character.names[shape] for shape in used]
+    extras = {
+        "targetNames": [surface.names[row] for row in used],
+        "gains": surface.gains[used].tolist(),
+    }
     return gltf.Mesh(
         name="face",
         primitives=[primitive],
         weights=[0.0] * len(used),
-        extras={"targetNames": names},
+        extras=extras,
     )
 
 
