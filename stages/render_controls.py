@@ -8,7 +8,7 @@ import numpy as np
 
 from stages import cli
 from stages.core import curve_panel, preview
-from stages.files import film, film_writer, series, tracked_film
+from stages.files import film, series, tracked_film
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -43,20 +43,10 @@ def main(argv: Sequence[str]) -> None:
         row = int(np.abs(curves.time_s - time_s).argmin())
         return curve_panel.draw_playhead(lanes, values, row)
 
-    film_writer.write(
-        options.preview,
-        preview.frames(
-            tracked_film.pictures(tracked),
-            tracked.arrays,
-            tracked.outlines,
-            f"{options.shot}, {options.character}",
-            curves_at,
-        ),
-        preview.size(*film.size(options.video)),
-        film.nominal_rate(options.video),
-        options.video,
-        tracked.time_s[0],
-    )
+    title = f"{options.shot}, {options.character}"
+    film_pictures = tracked_film.pictures(tracked)
+    shown = preview.frames(film_pictures, tracked.arrays, tracked.outlines, title, curves_at)
+    tracked_film.write(options.preview, tracked, shown, preview.size(*film.size(options.video)))
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ import numpy as np
 
 from stages import cli
 from stages.core import head_transform, polygons, portrait, preview
-from stages.files import errors, exr, film, film_writer, rig, tracked_film
+from stages.files import errors, exr, film, rig, tracked_film
 
 # the camera is fixed by so many frames of the take, without this share at either end
 SAMPLED_FRAMES = 100
@@ -68,20 +68,10 @@ def main(argv: Sequence[str]) -> None:
         progress.step()
         return paint(baked.frame(baked.nearest(time_s)))
 
-    film_writer.write(
-        options.preview,
-        preview.frames(
-            tracked_film.pictures(tracked),
-            tracked.arrays,
-            tracked.outlines,
-            f"{options.shot}, {options.character}",
-            character_at,
-        ),
-        preview.size(*film.size(options.video)),
-        film.nominal_rate(options.video),
-        options.video,
-        tracked.time_s[0],
-    )
+    title = f"{options.shot}, {options.character}"
+    film_pictures = tracked_film.pictures(tracked)
+    shown = preview.frames(film_pictures, tracked.arrays, tracked.outlines, title, character_at)
+    tracked_film.write(options.preview, tracked, shown, preview.size(*film.size(options.video)))
 
 
 if __name__ == "__main__":
