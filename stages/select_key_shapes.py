@@ -22,11 +22,7 @@ from stages.core import (
 )
 from stages.files import basis, errors, key_shapes, lock_table, model, region_settings, regions
 
-FOLDS = 3
 COUNTS = (2, 4, 8, 12, 16, 24)
-CURVE_FRAMES = 240
-# measured at one count only where no region asks for it
-SLOW = "swap_refinement"
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -72,7 +68,7 @@ def main(argv: Sequence[str]) -> None:
             region_features.stack(frames.points[:, chosen], weights),
             region_features.stack(frames.neutral[chosen], weights),
             pca.Pca(*(axes[f"{region}.{part}"] for part in pca.Pca._fields)),
-            _eligible(arguments, region, locks, confidence),
+            _eligible(arguments, frames, region, locks, confidence),
             tuple(locks.get(region, {}).get("locked", ())),
             arguments.seed,
             settings[region].sigma,
@@ -98,20 +94,23 @@ def main(argv: Sequence[str]) -> None:
 
 
 def _eligible(
-    arguments: argparse.Namespace, region: str, locks: lock_table.Locks, confidence: np.ndarray
+    arguments: argparse.Namespace,
+    frames: basis.Basis,
+    region: str,
+    locks: lock_table.Locks,
+    confidence: np.ndarray,
 ) -> np.ndarray:
     """Return which frames (T,) a selector may take; warn of locked ones that it could not."""
     states = locks.get(region, {"locked": [], "banned": []})
     eligible = confidence >= arguments.min_confidence
     for row in states["locked"]:
+        where = f"region {region}: locked frame {frames.frame[row]} of shot {frames.shot[row]}"
         if confidence[row] == 0:
-            message = f"region {region}: the face was not tracked on a locked frame (row {row}"
-            raise errors.InputError(arguments.key_shape_table, message + "): label it or unlock it")
+            message = f"{where} was not tracked: label it, or lock another"
+            raise errors.InputError(arguments.key_shape_table, message)
         if not eligible[row]:
-            cli.logger.warning(
-                "%s: region %s: a locked frame has confidence %.2f, below %g; it is kept",
-                arguments.key_shape_table, region, confidence[row], arguments.min_confidence,
-            )  # fmt: skip
+            text = f"has confidence {confidence[row]:.2f}, below {arguments.min_confidence:g}"
+            cli.logger.warning("%s: %s %s: kept", arguments.key_shape_table, where, text)
     eligible[states["banned"]] = False
     return eligible
 
@@ -122,25 +121,15 @@ def _measure(
     setting: region_settings.Settings,
 ) -> list[dict]:
     """Return method, count, split and rms of every method on blocks of time."""
-    usable = np.flatnonzero(candidates.eligible)
-    usable = usable[:: max(1, len(usable) // CURVE_FRAMES)]
-    fold = key_shape_errors.blocks(frames.shot[usable], frames.frame[usable], FOLDS)
     fixed = [setting.count] if isinstance(setting.count, int) else []
-    every = sorted({*COUNTS, *fixed})
-    few = every if setting.method == SLOW else fixed or [12]
     solve = partial(
         key_weights.solve, method=setting.solve, sigma=setting.sigma, bound=setting.bound
     )
-    seen = candidates._replace(
-        frames=candidates.frames[usable], eligible=np.ones(len(usable), bool), locked=()
-    )
-    return [
-        {"method": method, "count": count, "split": split, "rms": rms}
-        for method in key_shape_errors.METHODS
-        for count, split, rms in key_shape_errors.curve(
-            seen, fold, method, few if method == SLOW else every, solve
-        )
-    ]
+    counts = sorted({*COUNTS, *fixed})
+    few = counts if setting.method == key_shape_errors.SLOW else fixed or [12]
+    found = key_shape_errors.curves(candidates, frames.shot, frames.frame, counts, few, solve)
+    columns = ("method", "count", "split", "rms")
+    return [dict(zip(columns, row, strict=True)) for row in found]
 
 
 def _choose(
@@ -154,13 +143,12 @@ def _choose(
     own = [row for row in rows if row["method"] == setting.method and row["split"] == "held_out"]
     counts, held_out = [row["count"] for row in own], [row["rms"] for row in own]
     try:
-        if setting.count == "knee":
+        count, why = setting.count, "set in region_settings.tsv"
+        if count == "knee":
             count, why = key_shape_count.at_knee(counts, held_out)
-        elif setting.count == "budget":
+        if count == "budget":
             count, why = key_shape_count.within_budget(counts, held_out, setting.budget)
-        else:
-            count, why = setting.count, "set in region_settings.tsv"
-        if isinstance(setting.count, str) and count < len(candidates.locked):
+        if setting.count != count and count < len(candidates.locked):
             count, why = len(candidates.locked), f"as many are locked; {why} ({count})"
         return key_shape_selection.choose(candidates, count, setting.method), why
     except ValueError as error:

@@ -7,6 +7,10 @@ from stages.core import clustering, key_shape_candidates, key_shape_selection, p
 TRAINING, HELD_OUT = "training", "held_out"
 # clusters' centres of mass, which are no frames: what the paper plots
 CENTRES = {"clustering_2d_centres": 2, "clustering_3d_centres": 3}
+# measured at few counts, unless it is what a region uses
+SLOW = "swap_refinement"
+_FOLDS = 3
+_FRAMES = 240
 METHODS = (*key_shape_selection.SELECTORS, *CENTRES)
 
 
@@ -31,6 +35,37 @@ def blocks(shots, frames, folds):
         order = np.argsort(np.argsort(np.asarray(frames)[rows], kind="stable"))
         number[rows] = order * 2 * folds // len(rows) % folds
     return number
+
+
+def curves(candidates, shots, frames, counts, few, solve):
+    """Measure every method on blocks of time: its `curve`, on at most a few hundred frames.
+
+    Parameters
+    ----------
+    candidates : key_shape_candidates.Candidates
+    shots, frames : (T,) array
+        Where each frame stands.
+    counts : sequence of int
+    few : sequence of int
+        The counts of the method that is slow.
+    solve : callable
+        ``(frames, shapes, neutral) -> key_weights.Solution``.
+
+    Returns
+    -------
+    list of (method, count, split, rms) tuples
+    """
+    rows = np.flatnonzero(candidates.eligible)
+    rows = rows[:: max(1, len(rows) // _FRAMES)]
+    fold = blocks(shots[rows], frames[rows], _FOLDS)
+    seen = candidates._replace(
+        frames=candidates.frames[rows], eligible=np.ones(len(rows), bool), locked=()
+    )
+    return [
+        (method, *row)
+        for method in METHODS
+        for row in curve(seen, fold, method, few if method == SLOW else counts, solve)
+    ]
 
 
 def curve(candidates, fold, method, counts, solve):
