@@ -7,6 +7,7 @@ from pathlib import Path
 import cv2
 
 from bench.figures import (
+    example,
     key_shape_figure,
     lip_figures,
     lip_trial,
@@ -48,10 +49,9 @@ def main(argv: Sequence[str]) -> None:
 
 def _check_made(show: Path) -> None:
     """Refuse a show that has not been run."""
-    results = show / "results"
-    needed = [key_shape_figure.errors_path(show)]
-    needed += [results / "shots" / shot / "key_weights.parquet" for shot in (TAKE, BASIS)]
-    needed += [results / "takes" / TAKE / name / "mesh.json" for name in portraits.CHARACTERS]
+    needed = [example.of_actor(show, key_shape_figure.ERRORS)]
+    needed += [example.of_shot(show, shot, "key_weights.parquet") for shot in (TAKE, BASIS)]
+    needed += [example.of_take(show, TAKE, name, "mesh.json") for name in portraits.CHARACTERS]
     for path in needed:
         if not path.exists():
             raise errors.InputError(path, "is missing: run the example show first, by `make run`")

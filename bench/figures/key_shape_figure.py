@@ -4,11 +4,12 @@ from pathlib import Path
 
 import numpy as np
 
-from bench.figures import look, region_frames
+from bench.figures import example, look, region_frames
 from stages.core import key_shape_errors, key_weights
 from stages.files import key_shapes
 
-ACTOR, SHOT, REGION = "ada", "rom", "mouth"
+SHOT, REGION = "rom", "mouth"
+ERRORS = "key_shape_errors.parquet"
 COUNTS = tuple(range(2, 25, 2))
 FOLDS = 4
 MOST_FRAMES = 240
@@ -31,6 +32,10 @@ STYLES = {
         "farthest residual",
         {"color": "#777777", "ls": "-", "marker": "^", "ms": 5},
     ),
+    "shared_residual": (
+        "shared residual",
+        {"color": "#CC79A7", "ls": "-", "marker": "P", "ms": 5.5},
+    ),
     "swap_refinement": (
         "swap refinement",
         {"color": "#56B4E9", "ls": "-.", "marker": "v", "ms": 5},
@@ -44,7 +49,8 @@ STYLES = {
 
 def draw(show: Path, path: Path) -> None:
     """Draw the figure from the show's expressions and its own table of errors."""
-    own = [row for row in key_shapes.read_errors(errors_path(show)) if row["region"] == REGION]
+    measured = key_shapes.read_errors(example.of_actor(show, ERRORS))
+    own = [row for row in measured if row["region"] == REGION]
     settings = region_frames.settings(show, REGION)
     published = nonnegative_errors(region_frames.read(show, SHOT, REGION), settings.sigma)
     rows = (
@@ -66,11 +72,6 @@ def draw(show: Path, path: Path) -> None:
         panel.set_xlabel("number of key shapes")
     panels[1, 1].legend(frameon=False, fontsize=10)
     look.save(whole, path)
-
-
-def errors_path(show: Path) -> Path:
-    """Return where the workflow puts the errors of the actor's key shapes."""
-    return show / "results" / "actors" / ACTOR / "key_shape_errors.parquet"
 
 
 def nonnegative_errors(lips: region_frames.RegionFrames, sigma: float) -> list[dict]:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from bench.figures import look, own_key_shapes, portraits, region_frames
+from bench.figures import example, look, own_key_shapes, portraits
 from stages.core import head_transform
 from stages.files import series
 
@@ -25,7 +25,7 @@ def draw(show: Path, path: Path) -> None:
     shot = own_key_shapes.SHOT
     sequence = own_key_shapes.read(show)
     solved = {name: own_key_shapes.solve(sequence, name) for name in sequence.chosen}
-    frames = portraits.varied_frames(show, shot, region_frames.expression_path(show, shot))
+    frames = portraits.varied_frames(show, shot)
     rows, curves = [portraits.film_pictures(show, shot, frames)], {}
     for name in portraits.CHARACTERS:
         character = own_key_shapes.target(show, name, sequence.frame)
@@ -49,7 +49,7 @@ def draw(show: Path, path: Path) -> None:
 
 def with_head(show: Path, character, shapes: np.ndarray, frames: list[int]) -> np.ndarray:
     """Move shapes (N, V, 3) of a character with the head of the sequence's frames."""
-    path = show / "results" / "shots" / own_key_shapes.SHOT / "head_motion.parquet"
+    path = example.of_shot(show, own_key_shapes.SHOT, "head_motion.parquet")
     motion = series.read(path, "head_motion")
     rows = np.searchsorted(motion.frame, frames)
     turns, shifts, (scale,) = (

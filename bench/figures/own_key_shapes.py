@@ -10,12 +10,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bench.figures import region_frames
+from bench.figures import example, region_frames
 from data_example.generator import drawing, human_mesh, params, radio, sculpting
 from stages.core import compose, key_weights, region_features
 from stages.files import key_shapes, region_settings, regions, rig
 
-ACTOR, BASIS, SHOT = "ada", "rom", "turn"
+BASIS, SHOT = "rom", "turn"
 COUNTS = {"mouth": 14, "eyes": 8, "pupils": 5}  # CB02 section 5; it gives no number of pupils
 DRAWS = 5
 MODELS = {"human": human_mesh, "radio": radio, "drawing": drawing}
@@ -115,10 +115,9 @@ class Target(NamedTuple):
 def target(show: Path, name: str, frame: np.ndarray) -> Target:
     """Build one of `MODELS` and pose it as the truth says on some frames of the sequence."""
     model = MODELS[name].build(params.neutral())
-    truth = {shot: show / "data_example" / "truth" / f"{shot}.npz" for shot in (BASIS, SHOT)}
-    rows = {shot: np.load(path)["expression"] for shot, path in truth.items()}
+    rows = {shot: np.load(example.truth(show, shot))["expression"] for shot in (BASIS, SHOT)}
     return Target(
-        rig.read(show / "results" / "cast" / ACTOR / name / "rig.npz", "mesh"),
+        rig.read(example.rig(show, name), "mesh"),
         model.pose,
         rows,
         model.pose(params.neutral()),
@@ -196,7 +195,7 @@ def _choose(
 
 def _shown(show: Path, table: regions.Regions) -> dict[str, KeySet]:
     """Return the key shapes that the show's characters are sculpted for."""
-    rows = key_shapes.read(show / "results" / "actors" / ACTOR / "key_shapes.parquet")
+    rows = key_shapes.read(example.of_actor(show, "key_shapes.parquet"))
     found = {}
     for region in table:
         own = [row for row in rows if row.region == region]

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from bench.figures import look, region_frames
+from bench.figures import example, look, region_frames
 from stages.core import head_transform, polygons, portrait, region_features
 from stages.files import basis, film, regions, rig
 
@@ -36,33 +36,26 @@ def character_pictures(character: rig.Rig, positions: np.ndarray) -> list[np.nda
     return [paint(shape) for shape in positions]
 
 
-def film_path(show: Path, shot: str) -> Path:
-    """Return a film of the example."""
-    return show / "data_example" / "films" / f"{shot}.mp4"
-
-
 def film_pictures(show: Path, shot: str, frames: list[int]) -> list[np.ndarray]:
     """Return pictures of the example's films, whose rate is constant."""
-    named_in = region_frames.expression_path(show, shot)
-    found = film.frames_at(film_path(show, shot), frames, named_in)
+    named_in = example.of_shot(show, shot, "expression.parquet")
+    found = film.frames_at(example.film(show, shot), frames, named_in)
     return [found[frame] for frame in frames]
 
 
-def varied_frames(show: Path, shot: str, path: Path) -> list[int]:
+def varied_frames(show: Path, shot: str) -> list[int]:
     """Return numbers of well tracked frames that differ much, in the order of time.
 
     Parameters
     ----------
     show : Path
     shot : str
-    path : Path
-        The shot's expression.
 
     Returns
     -------
     list of int
     """
-    performance = basis.read([path], [shot])
+    performance = basis.read([example.of_shot(show, shot, "expression.parquet")], [shot])
     table_path = show / "config" / "regions.tsv"
     table = regions.read(table_path)
     parts, good = [], np.ones(len(performance.frame), bool)

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bench.figures import example
 from stages.core import key_shape_candidates, key_shape_selection, pca, region_features
 from stages.files import basis, region_settings, regions
 
@@ -31,14 +32,9 @@ class RegionFrames(NamedTuple):
     frame: np.ndarray
 
 
-def expression_path(show: Path, shot: str) -> Path:
-    """Return where the workflow puts a shot's expression."""
-    return show / "results" / "shots" / shot / "expression.parquet"
-
-
 def read(show: Path, shot: str, region: str) -> RegionFrames:
     """Read a region of a shot of the example show."""
-    performance = basis.read([expression_path(show, shot)], [shot])
+    performance = basis.read([example.of_shot(show, shot, "expression.parquet")], [shot])
     table_path = show / "config" / "regions.tsv"
     table = regions.read(table_path)
     chosen, weights = regions.select(table_path, table, region, performance.names)

@@ -5,23 +5,22 @@ from pathlib import Path
 
 import numpy as np
 
-from bench.figures import look, portraits, region_frames
+from bench.figures import example, look, portraits
 from stages.files import exr, film, key_shapes, rig
 
-ACTOR, SHOT = "ada", "talk"
+SHOT = "talk"
 WIDTH, TOP = 12.0, 0.25  # inches
 
 
 def draw(show: Path, path: Path) -> None:
     """Draw the film's frames and, below, the baked frames of every character."""
-    expression = region_frames.expression_path(show, SHOT)
-    frames = portraits.varied_frames(show, SHOT, expression)
+    frames = portraits.varied_frames(show, SHOT)
     rows = [portraits.film_pictures(show, SHOT, frames)]
     rows += [_baked(show, name, frames) for name in portraits.CHARACTERS]
-    shapes = key_shapes.read(show / "results" / "actors" / ACTOR / "key_shapes.parquet")
+    shapes = key_shapes.read(example.of_actor(show, "key_shapes.parquet"))
     counts = Counter(shape.region for shape in shapes)
     words = ", ".join(f"{count} for the {region}" for region, count in counts.items())
-    length = film.promised_count(portraits.film_path(show, SHOT))
+    length = film.promised_count(example.film(show, SHOT))
     caption = (
         f"Figure 8 (a). Frames of the take '{SHOT}' ({length} frames) and what it makes of three "
         f"characters. The key shapes come from the range-of-motion take: {words}. Each region is "
@@ -36,10 +35,9 @@ def draw(show: Path, path: Path) -> None:
 
 def _baked(show: Path, name: str, frames: list[int]) -> list[np.ndarray]:
     """Return pictures of a character's baked frames at the times of the film's frames."""
-    folder = show / "results" / "takes" / SHOT / name
-    description = exr.read_json(folder / "mesh.json")
-    baked = exr.Reader(folder / "mesh.exr", description)
-    character = rig.read(show / "results" / "cast" / ACTOR / name / "rig.npz", "mesh")
-    rate = film.nominal_rate(portraits.film_path(show, SHOT))
+    description = exr.read_json(example.of_take(show, SHOT, name, "mesh.json"))
+    baked = exr.Reader(example.of_take(show, SHOT, name, "mesh.exr"), description)
+    character = rig.read(example.rig(show, name), "mesh")
+    rate = film.nominal_rate(example.film(show, SHOT))
     rows = [baked.nearest(float(frame / rate)) for frame in frames]
     return portraits.character_pictures(character, np.stack([baked.frame(row) for row in rows]))

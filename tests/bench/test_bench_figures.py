@@ -11,7 +11,7 @@ from bench.figures import (
     region_frames,
     tracing,
 )
-from stages.core import key_weights
+from stages.core import key_shape_errors, key_weights
 from stages.files import region_settings
 
 SETTINGS = region_settings.Settings(12, None, "maximum_spread", "tolerant", 0.15, None)
@@ -115,6 +115,10 @@ def test_figure_6_reaches_zero_at_the_corners(generator):
         assert error["successive_projection", split, 6] < 1e-9
         assert error["successive_projection", split, 4] > 0.01
         assert error["maximum_spread", split, 24] < error["maximum_spread", split, 4]
+
+
+def test_figure_6_has_a_line_for_every_selector():
+    assert set(key_shape_figure.STYLES) == set(key_shape_errors.METHODS)
 
 
 def test_farthest_frames_differ_and_stand_apart(generator):
