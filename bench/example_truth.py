@@ -76,4 +76,4 @@ def _true_roll(truth: dict) -> np.ndarray:
 
 
 if __name__ == "__main__":
-    sys.stdout.write("\n".join(table(Path(sys.argv[1]))) + "\n")
+    sys.stdout.write("\n".join(table(Path(sys.argv[1] if len(sys.argv) > 1 else "."))) + "\n")
