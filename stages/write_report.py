@@ -1,10 +1,12 @@
 """Write the page that a supervisor opens: every take and shot, from whatever exists.
 
-It is made at the end of each run, whether that succeeded or not, and by hand at any time; what is
-missing is named with the line in which its stage failed.
+It is made at the end of each run, whether that succeeded or not, and by hand at any time. What is
+missing, or older than a fault, is named with the line in which its stage failed: a failed job
+leaves that line in its log until it runs again.
 """
 
 import argparse
+import logging
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -17,6 +19,9 @@ from stages.files import proposal_table, series, web_page
 DELIVERIES = ("mesh.glb", "mesh.exr", "mesh.pc2", "controls.csv", "weights.csv")
 MOTION = ("rotation.z", "translation.x", "translation.y", "scale")
 PROPOSALS = 8
+ASIDE = ("propose_labels", "write_brief", "check_sculpts")  # no take waits for them
+
+logger = logging.getLogger(__name__)
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -25,6 +30,7 @@ def build_parser() -> argparse.ArgumentParser:
     parser.add_argument("--results", required=True, type=Path, help="folder of the results")
     parser.add_argument("--logs", required=True, type=Path, help="folder of the logs")
     parser.add_argument("--shots", required=True, nargs="*", help="<actor>/<session>/<shot> each")
+    parser.add_argument("--basis", required=True, nargs="*", help="names of the basis shots")
     parser.add_argument("--takes", required=True, nargs="*", help="<shot>/<character> each")
     parser.add_argument("--template", required=True, help="template of the page")
     parser.add_argument("--report", required=True, help="page, .html")
@@ -39,11 +45,21 @@ def main(argv: Sequence[str]) -> None:
     context = {
         "takes": takes,
         "done": sum(not take["failure"] for take in takes),
-        "shots": [_shot(arguments, shot, place) for shot, place in places.items()],
+        "shots": [_shot(arguments, shot, places) for shot in places],
         "actors": _actors(arguments.results, sorted({actor for actor, _ in places.values()})),
         "proposals": _proposals(arguments.results, sorted({s for _, s in places.values()})),
     }
     web_page.write(arguments.report, arguments.template, context)
+    _say(context, arguments.report)
+
+
+def _say(context: dict, report: str) -> None:
+    """Close the run's output with each fault once, and where the page lies."""
+    faults = [part["failure"] for part in context["takes"] + context["shots"] if part["failure"]]
+    for fault in dict.fromkeys(faults):
+        logger.info("%s", fault)
+    done, total = context["done"], len(context["takes"])
+    logger.info("%d of %d takes are finished, see %s", done, total, report)
 
 
 def _split(text: str) -> list[str]:
@@ -51,41 +67,51 @@ def _split(text: str) -> list[str]:
     return text.split("/")
 
 
-def _failure(logs: Path, places: Sequence[str]) -> str:
-    """Return the line in which the first failing stage of some places ended."""
+def _failure(logs: Path, places: Sequence[str], whole: bool) -> str:
+    """Return the line in which the first failing stage of some places ended, or nothing."""
     for place in places:
         for log in sorted(logs.glob(f"*/{place}.log")):
+            stage = log.relative_to(logs).parts[0]
             for line in log.read_text(encoding="utf-8", errors="replace").splitlines():
-                if line.startswith("error: "):
-                    return f"{log.relative_to(logs).parts[0]}: {line.removeprefix('error: ')}"
-    return "not made yet: run snakemake"
+                if line.startswith("error: ") and stage not in ASIDE:
+                    old = "out of date, made by an earlier run: " if whole else ""
+                    return f"{old}{stage}: {line.removeprefix('error: ')}"
+    return "" if whole else "not made yet: run keyface"
+
+
+def _upstream(arguments: argparse.Namespace, shot: str, places: dict) -> list[str]:
+    """Return the names of what a shot's weights are made from: sessions, shots, the actor."""
+    actor, session = places[shot]
+    basis = [name for name in arguments.basis if places[name][0] == actor]
+    sessions = [session, *(places[name][1] for name in basis)]
+    return list(dict.fromkeys([*sessions, shot, *basis, actor]))
 
 
 def _take(arguments: argparse.Namespace, place: str, places: dict) -> dict:
     """Return what the page says of a take."""
     shot, character = _split(place)
-    actor, session = places[shot]
     folder = arguments.results / "takes" / place
     found = [name for name in DELIVERIES if (folder / name).is_file()]
     preview = (folder / "preview.mp4").is_file()
     whole = preview or "controls.csv" in found
-    upstream = [session, shot, actor, f"{actor}/{character}", place]
+    upstream = [*_upstream(arguments, shot, places), f"{places[shot][0]}/{character}", place]
     return {
         "shot": shot,
         "character": character,
         "preview": f"../takes/{place}/preview.mp4" if preview else "",
         "files": [{"name": name, "path": f"../takes/{place}/{name}"} for name in found],
-        "failure": "" if whole else _failure(arguments.logs, upstream),
+        "failure": _failure(arguments.logs, upstream, whole),
     }
 
 
-def _shot(arguments: argparse.Namespace, shot: str, place: tuple[str, str]) -> dict:
+def _shot(arguments: argparse.Namespace, shot: str, places: dict) -> dict:
     """Return what the page says of a shot."""
-    actor, session = place
     folder = arguments.results / "shots" / shot
     files = [folder / f"{name}.parquet" for name in ("expression", "head_motion", "key_weights")]
-    if not all(path.is_file() for path in files):
-        return {"name": shot, "failure": _failure(arguments.logs, [session, shot, actor])}
+    whole = all(path.is_file() for path in files)
+    failure = _failure(arguments.logs, _upstream(arguments, shot, places), whole)
+    if failure:
+        return {"name": shot, "failure": failure}
     expression, motion, weights = (series.read(path, path.stem) for path in files)
     confidence = np.nan_to_num(expression.columns["confidence"])
     lost = int((confidence == 0).sum())

@@ -173,9 +173,10 @@ def report_command():
     for row in SHOW["shots"]:
         session = session_of(row.cells["shot"])
         shots.append(f"{session['actor']}/{session['session']}/{row.cells['shot']}")
+    basis = [row["shot"] for row in rows_of(SHOW["shots"], "basis", "yes")]
     played = [f"{shot}/{character}" for shot, character in cast_takes()]
     return shlex.join(
         ["python", "-m", "stages.write_report", "--results", "results", "--logs", "logs"]
-        + ["--shots", *shots, "--takes", *played, "--template", template("report.html")]
+        + ["--shots", *shots, "--basis", *basis, "--takes", *played, "--template", template("report.html")]
         + ["--report", "results/report/index.html"]
     )
