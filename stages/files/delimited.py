@@ -46,7 +46,7 @@ def read(
     if not lines:
         raise errors.InputError(path, f"is empty: its header is {', '.join(required)}")
     header = [name.strip() for name in lines[0]]
-    _check_header(path, header, required, optional)
+    _check_header(path, header, required, optional, separator)
     rows = []
     for number, line in enumerate(lines[1:], start=2):
         if not any(cell.strip() for cell in line):
@@ -59,14 +59,19 @@ def read(
 
 
 def _check_header(
-    path: str | Path, header: list[str], required: Sequence[str], optional: Sequence[str]
+    path: str | Path,
+    header: list[str],
+    required: Sequence[str],
+    optional: Sequence[str],
+    separator: str,
 ) -> None:
     """Compare the columns with those that the table may have."""
     known = [*required, *optional]
+    between = "tabs" if separator == "\t" else "commas"
     for name in header:
         if name not in known:
             message = f"unknown column '{name}': the columns are {', '.join(known)}"
-            raise errors.InputError(path, message)
+            raise errors.InputError(path, f"{message}, with {between} between them")
         if header.count(name) > 1:
             raise errors.InputError(path, f"column '{name}' stands twice: remove one")
     for name in required:

@@ -54,8 +54,9 @@ def _check_row(
             missing = next(name for name in fault.validator_value if name not in filled)
             raise errors.InputError(path, f"{place}, column {missing}: the cell is blank, fill it")
         column = fault.path[0]
-        meaning = properties[column]["description"]
+        meaning, choices = properties[column]["description"], properties[column].get("enum")
         message = f"{place}, column {column}: '{filled[column]}' does not fit; it is: {meaning}"
+        message += f"; write one of {', '.join(choices)}" if choices else ""
         raise errors.InputError(path, message)
 
 

@@ -35,7 +35,7 @@ def present(paths):
 
 def template(name):
     """Return the path of a page's template, an input like any other."""
-    return str(Path(workflow.basedir, "stages", "templates", name))
+    return str(Path(workflow.basedir, "stages", "templates", name).resolve())
 
 
 def table(name):
