@@ -177,15 +177,6 @@ def report_command():
     played = [f"{shot}/{character}" for shot, character in cast_takes()]
     return shlex.join(
         ["python", "-m", "stages.write_report", "--results", "results", "--logs", "logs"]
-        + [
-            "--shots",
-            *shots,
-            "--basis",
-            *basis,
-            "--takes",
-            *played,
-            "--template",
-            template("report.html"),
-        ]
-        + ["--report", "results/report/index.html"]
+        + ["--shots", *shots, "--basis", *basis, "--takes", *played]
+        + ["--template", template("report.html"), "--report", "results/report/index.html"]
     )
