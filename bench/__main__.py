@@ -2,6 +2,7 @@
 
 A folder with `labels.csv` and `reference/` tries the tracker; one with `ict-facekit/`,
 `facecap-head/` and `livelink/` tries key shapes and weights; a folder of such folders tries all.
+Without data it takes about five minutes, most of them for `reruns`.
 """
 
 import argparse

@@ -30,6 +30,7 @@ def build_parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--actor", required=True, help="name of the actor")
     parser.add_argument("--key-shapes", required=True, help="key shapes of the actor, .parquet")
+    parser.add_argument("--key-shape-table", required=True, help="table of locks and bans")
     parser.add_argument("--errors", required=True, help="error against count, .parquet")
     parser.add_argument("--shots", required=True, nargs="+", help="names of the basis shots")
     parser.add_argument("--videos", required=True, nargs="+", help="their films")
@@ -57,7 +58,7 @@ def main(argv: Sequence[str]) -> None:
         for character, path in zip(arguments.characters, arguments.states, strict=True)
     }
     rows = [(shape.region, shape.shot, shape.frame) for shape in shapes]
-    locks = lock_table.locking(arguments.actor, rows)
+    locks = lock_table.locking(arguments.key_shape_table, arguments.actor, rows)
     context = {
         "actor": arguments.actor,
         "characters": [_summary(name, rows.values()) for name, rows in states.items()],

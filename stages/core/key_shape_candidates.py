@@ -71,5 +71,6 @@ def check(candidates, count):
     if not max(1, locked) <= count <= available:
         raise ValueError(
             f"{count} key shapes cannot be chosen: {locked} frames are locked "
-            f"and {available} of {len(candidates.frames)} can be used"
+            f"and {available} of {len(candidates.frames)} can be used; "
+            "change the count, or unlock or unban frames"
         )

@@ -37,7 +37,8 @@ def choose(candidates, count):
         weights = key_weights.solve(frames, shapes, neutral, "tolerant_even", sigma).weights
         score = _score(frames - neutral - weights @ (shapes - neutral))
         score[~key_shape_candidates.free(candidates, chosen)] = -1.0
-        reason = f"most of what the {len(chosen)} before it leave unexplained"
+        before = f"the {len(chosen)} before it" if chosen else "the neutral"
+        reason = f"holds most of what {before} left unexplained"
         chosen.append(Choice(int(score.argmax()), reason))
     return chosen
 

@@ -11,9 +11,19 @@ STATES = ("locked", "banned")
 Locks = dict[str, dict[str, list[int]]]
 
 
-def locking(actor: str, shapes: Iterable[tuple[str, str, int]]) -> str:
-    """Return the text of a table that locks key shapes of an actor, (region, shot, frame) each."""
-    rows = [(actor, region, shot, str(frame), STATES[0]) for region, shot, frame in shapes]
+def locking(path: str | Path, actor: str, shapes: Iterable[tuple[str, str, int]]) -> str:
+    """Return the text of a table that locks an actor's key shapes and keeps the actor's bans.
+
+    Parameters
+    ----------
+    path : the table that holds the bans
+    actor : whose rows are written
+    shapes : (region, shot, frame) of each key shape
+    """
+    rows = [(actor, region, shot, str(frame), "locked") for region, shot, frame in shapes]
+    for row in delimited.read(path, COLUMNS):
+        if row.cells["actor"] == actor and row.cells["state"] == "banned":
+            rows.append(tuple(row.cells[column] for column in COLUMNS))
     return delimited.as_text(COLUMNS, rows)
 
 

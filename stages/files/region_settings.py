@@ -68,5 +68,7 @@ def read(path: str | Path, regions: Iterable[str]) -> dict[str, Settings]:
         )
     for region in regions:
         if region not in found:
-            raise errors.InputError(path, f"region {region} has no row: add one with its count")
+            raise errors.InputError(
+                path, f"region {region} has no row: add one, or drop it from regions.tsv"
+            )
     return found

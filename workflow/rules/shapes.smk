@@ -79,6 +79,7 @@ rule write_brief:
         tracked=basis_tracked,
         expressions=basis_expressions,
         states=sculpt_states,
+        key_shape_table=ancient("config/key_shapes.tsv"),
         point_set="config/point_set.tsv",
         regions="config/regions.tsv",
         template=template("brief.html"),
@@ -102,10 +103,12 @@ rule write_brief:
         shots=basis_shots,
         videos=basis_film_paths,
         characters=played_characters,
+        lock_rows=lock_rows,
     shell:
         "python -m stages.write_brief"
         " --actor {wildcards.actor:q}"
         " --key-shapes {input.key_shapes:q}"
+        " --key-shape-table {input.key_shape_table:q}"
         " --errors {input.errors:q}"
         " --shots {params.shots:q}"
         " --videos {params.videos:q}"
