@@ -125,6 +125,10 @@ def unstack(values: np.ndarray, names: Sequence[str], axes: str = "xy") -> dict[
     }
 
 
-def point_names(series: Series) -> list[str]:
-    """Return the names of the points, in the file's order."""
-    return [name.removesuffix(".x") for name in series.columns if name.endswith(".x")]
+def point_names(series: Series, axes: str = "xy") -> list[str]:
+    """Return the names of the points with exactly these axes, in the file's order.
+
+    Points of the film have `xy`, markers `xyz`.
+    """
+    names = [name.removesuffix(".x") for name in series.columns if name.endswith(".x")]
+    return [name for name in names if (f"{name}.z" in series.columns) == (axes == "xyz")]
