@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from stages import cli
-from stages.core import masks
+from stages.core import local_shapes, masks
 from stages.files import errors, key_shapes, mask_table, rig, sculpts
 
 
@@ -100,9 +100,9 @@ def main(argv: Sequence[str]) -> None:
     regions, values = _masks(options.masks, neutral)
     wanted = _wanted(options, regions, values)
     _refuse_gaps(options, wanted)
-    deltas = np.zeros((len(wanted), *neutral.coordinates.shape))
-    for row, (_, _, path) in enumerate(wanted):
-        deltas[row] = sculpts.read_sculpt(path, neutral)[0] - neutral.coordinates
+    deltas = local_shapes.gather(
+        sculpts.read_sculpt(path, neutral)[0] - neutral.coordinates for *_, path in wanted
+    )
     result = rig.Rig(
         names=[f"{region}.{shape}" for region, shape, _ in wanted],
         mask_names=regions,

@@ -7,7 +7,7 @@ import argparse
 from collections.abc import Sequence
 
 from stages import cli
-from stages.core import compose
+from stages.core import compose, local_shapes
 from stages.files import rig, series, weights
 
 
@@ -26,8 +26,8 @@ def main(argv: Sequence[str]) -> None:
     options = build_parser().parse_args(argv)
     character = rig.read(options.rig, "controls")
     played = weights.read(options.weights, character.names)
-    masked = compose.mask_deltas(character.deltas, character.masks, character.mask_index)
-    values = character.neutral[:, 0] + played.shapes @ masked[:, :, 0]
+    masked = local_shapes.masked(character.deltas, character.masks, character.mask_index)
+    values = compose.compose(character.neutral, compose.blocks(masked), played.shapes)[:, :, 0]
     columns = dict(zip(character.controls, values.T, strict=True))
     sources = [options.rig, options.weights]
     frame, time_s, rate = played.frame, played.time_s, played.rate

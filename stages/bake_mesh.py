@@ -8,8 +8,11 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from stages import cli
-from stages.core import compose, head_transform, morph_sides, polygons
+from stages.core import compose, head_transform, local_shapes, morph_sides, polygons
 from stages.files import atomic, errors, exr, gltf, pc2, rig, weights
+
+# frames that are composed at once
+CHUNK = 32
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -36,7 +39,9 @@ def _motion(character: rig.Rig, played: weights.Weights) -> gltf.Motion:
     )
 
 
-def _surface(character: rig.Rig, masked: np.ndarray, sides: morph_sides.Sides) -> gltf.Surface:
+def _surface(
+    character: rig.Rig, masked: local_shapes.LocalShapes, sides: morph_sides.Sides
+) -> gltf.Surface:
     """Cut the polygons into triangles, find the normals of the neutral, name the targets."""
     triangles = polygons.triangulate(character.sizes, character.corners)
     normals = polygons.vertex_normals(character.neutral, triangles)
@@ -44,23 +49,29 @@ def _surface(character: rig.Rig, masked: np.ndarray, sides: morph_sides.Sides) -
         character.names[shape] + ("" if gain > 0 else ".minus")
         for shape, gain in zip(sides.shape, sides.gain, strict=True)
     ]
-    targets = sides.gain[:, None, None] * masked[sides.shape]
+    targets = local_shapes.select(masked, sides.shape, sides.gain)
     return gltf.Surface(triangles, normals, names, sides.gain, targets)
 
 
-def _positions(character: rig.Rig, masked: np.ndarray, motion: gltf.Motion) -> Iterator[np.ndarray]:
+def _positions(
+    character: rig.Rig, masked: local_shapes.LocalShapes, motion: gltf.Motion
+) -> Iterator[np.ndarray]:
     """Yield the (V, 3) float32 positions of every frame."""
-    for frame, row in enumerate(motion.weights):
-        shape = compose.compose(character.neutral, masked, row)
+    blocks = compose.blocks(masked)
+    for frame in range(len(motion.weights)):
+        if frame % CHUNK == 0:
+            rows = motion.weights[frame : frame + CHUNK]
+            shapes = compose.compose(character.neutral, blocks, rows)
+        shape = shapes[frame % CHUNK]
         rotation = head_transform.rotation_matrix(motion.rotation[frame])
         yield head_transform.apply(
             shape, rotation, motion.translation[frame], motion.scale[frame], character.pivot
         ).astype(np.float32)
 
 
-def _form(character: rig.Rig, masked: np.ndarray, motion: gltf.Motion) -> dict:
+def _form(character: rig.Rig, masked: local_shapes.LocalShapes, motion: gltf.Motion) -> dict:
     """Return what the JSON says of the character."""
-    active = (motion.weights != 0) & masked.any(axis=(1, 2))
+    active = (motion.weights != 0) & local_shapes.touched(masked)
     return {
         "axes": {"up": character.up_axis, "R": "x", "G": "y", "B": "z"},
         "unit": character.unit,
@@ -75,7 +86,7 @@ def main(argv: Sequence[str]) -> None:
     options = build_parser().parse_args(argv)
     character = rig.read(options.rig, "mesh")
     played = weights.read(options.weights, character.names)
-    masked = compose.mask_deltas(character.deltas, character.masks, character.mask_index)
+    masked = local_shapes.masked(character.deltas, character.masks, character.mask_index)
     motion = _motion(character, played)
     vertices, frames, first = len(character.neutral), len(played.frame), int(played.frame[0])
     progress = cli.Progress("bake", frames)

@@ -12,7 +12,7 @@ import numpy as np
 
 from bench.figures import example, region_frames
 from data_example.generator import drawing, human_mesh, params, radio, sculpting
-from stages.core import compose, key_weights, region_features
+from stages.core import compose, key_weights, local_shapes, region_features
 from stages.files import key_shapes, region_settings, regions, rig
 
 BASIS, SHOT = "rom", "turn"
@@ -125,8 +125,8 @@ def target(show: Path, name: str, frame: np.ndarray) -> Target:
     )
 
 
-def sculpted(character: Target, chosen: dict[str, KeySet], draw: int) -> np.ndarray:
-    """Return masked differences (K, V, 3) of a sculptor's key shapes, region after region."""
+def sculpted(character: Target, chosen: dict[str, KeySet], draw: int) -> local_shapes.LocalShapes:
+    """Return the masked differences of a sculptor's key shapes, region after region."""
     masks = character.rig.mask_names
     deltas, index = [], []
     for region, keys in chosen.items():
@@ -136,7 +136,7 @@ def sculpted(character: Target, chosen: dict[str, KeySet], draw: int) -> np.ndar
             made = sculpting.sculpt(character.neutral, character.pose(p), generator)
             deltas.append(made - character.neutral)
             index.append(masks.index(region))
-    return compose.mask_deltas(np.array(deltas), character.rig.masks, np.array(index))
+    return local_shapes.masked(local_shapes.gather(deltas), character.rig.masks, np.array(index))
 
 
 def play(
@@ -145,7 +145,7 @@ def play(
     """Return the positions (T, V, 3) that weights give a character, without head motion."""
     masked = sculpted(character, chosen, draw)
     rows = np.concatenate([weights[region] for region in chosen], axis=1)
-    return np.stack([compose.compose(character.neutral, masked, row) for row in rows])
+    return compose.compose(character.neutral, compose.blocks(masked), rows)
 
 
 def target_error(

@@ -5,55 +5,82 @@
 The part in brackets is here; the head motion `H_t` is in `head_transform`.
 """
 
+import itertools
+from typing import NamedTuple
+
 import numpy as np
 
+from stages.core import local_shapes
 
-def mask_deltas(deltas: np.ndarray, masks: np.ndarray, mask_index: np.ndarray) -> np.ndarray:
-    """Multiply every shape's difference from the neutral by its mask.
+BLOCK = 256
+
+
+class Block(NamedTuple):
+    """Hold a run of vertices, the shapes that reach it and what they do there.
+
+    Attributes
+    ----------
+    start, stop : the run
+    shapes : (k,) int array
+    deltas : (k, (stop - start) D) float array [character's unit]
+    """
+
+    start: int
+    stop: int
+    shapes: np.ndarray
+    deltas: np.ndarray
+
+
+def blocks(shapes: local_shapes.LocalShapes) -> list[Block]:
+    """Cut masked shapes into small dense products that leave out what is zero.
 
     Parameters
     ----------
-    deltas : (K, V, D) float array, `B_i - N` [character's unit]
-    masks : (R, V) float array, one at every vertex in sum
-    mask_index : (K,) int array, the mask of each shape
-
-    Returns
-    -------
-    (K, V, D) float array, `M_l (B_i - N)`
-
-    Raises
-    ------
-    ValueError
-        if the shapes do not fit together
+    shapes : K shapes from `local_shapes.masked`
     """
-    if deltas.ndim != 3 or masks.shape[1:] != deltas.shape[1:2] or len(mask_index) != len(deltas):
-        raise ValueError(
-            f"deltas {deltas.shape}, masks {masks.shape} and mask_index {mask_index.shape}"
-            " are not (K, V, D), (R, V) and (K,)"
-        )
-    return deltas * masks[mask_index][:, :, None]
+    owner = np.repeat(np.arange(len(shapes.first) - 1), np.diff(shapes.first))
+    order = np.argsort(shapes.vertices // BLOCK, kind="stable")
+    bounds = np.searchsorted(
+        shapes.vertices[order] // BLOCK, np.arange(-(-shapes.count // BLOCK) + 1)
+    )
+    made = []
+    for number, (low, high) in enumerate(itertools.pairwise(bounds)):
+        start, stop = number * BLOCK, min((number + 1) * BLOCK, shapes.count)
+        rows = order[low:high]
+        used, place = np.unique(owner[rows], return_inverse=True)
+        width = shapes.values.shape[1]
+        deltas = np.zeros((len(used), stop - start, width))
+        deltas[place, shapes.vertices[rows] - start] = shapes.values[rows]
+        made.append(Block(start, stop, used, deltas.reshape(len(used), (stop - start) * width)))
+    return made
 
 
-def compose(neutral: np.ndarray, masked: np.ndarray, weights: np.ndarray) -> np.ndarray:
-    """Add the weighted shape differences of one frame to the neutral.
+def compose(neutral: np.ndarray, parts: list[Block], weights: np.ndarray) -> np.ndarray:
+    """Add the weighted shape differences of some frames to the neutral.
 
     Parameters
     ----------
     neutral : (V, D) float array [character's unit]
-    masked : (K, V, D) float array from `mask_deltas`
-    weights : (K,) float array, `u_li` of the frame
+    parts : from `blocks`
+    weights : (T, K) float array, `u_li` of each frame
 
     Returns
     -------
-    (V, D) float array [character's unit]
+    (T, V, D) float array [character's unit]
 
     Raises
     ------
     ValueError
-        if the shapes do not fit together
+        if the blocks are of another number of vertices or shapes
     """
-    if masked.shape != (len(weights), *neutral.shape):
+    needed = max((int(part.shapes[-1]) + 1 for part in parts if len(part.shapes)), default=0)
+    if parts[-1].stop != len(neutral) or weights.shape[1] < needed:
         raise ValueError(
-            f"masked {masked.shape}, weights {weights.shape}, neutral {neutral.shape} do not fit"
+            f"neutral {neutral.shape} and weights {weights.shape} do not fit blocks of"
+            f" {parts[-1].stop} vertices and {needed} shapes"
         )
-    return neutral + (weights @ masked.reshape(len(weights), -1)).reshape(neutral.shape)
+    moved = np.repeat(neutral[None], len(weights), axis=0)
+    for start, stop, shapes, deltas in parts:
+        added = weights[:, shapes] @ deltas
+        moved[:, start:stop] += added.reshape(len(weights), *moved[0, start:stop].shape)
+    return moved

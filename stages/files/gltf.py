@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 import pygltflib as gltf
 
+from stages.core import local_shapes
 from stages.files import rig
 
 UPRIGHT = {"y": [0.0, 0.0, 0.0, 1.0], "z": [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]}
@@ -31,14 +32,14 @@ class Surface:
     normals : (V, 3) float array, of the neutral
     names : M names of morph targets
     gains : (M,) float array, a target's differences are so many times its shape's
-    targets : (M, V, 3) float array, differences from the neutral [unit]
+    targets : M shapes, differences from the neutral [unit]
     """
 
     triangles: np.ndarray
     normals: np.ndarray
     names: list[str]
     gains: np.ndarray
-    targets: np.ndarray
+    targets: local_shapes.LocalShapes
 
 
 @dataclasses.dataclass(frozen=True)
@@ -107,23 +108,23 @@ class _Buffer:
         )
         return len(self.accessors) - 1
 
-    def sparse(self, values: np.ndarray) -> int:
-        """Append (V, 3) float32 values, mostly zero rows; return the number of their accessor."""
-        rows = np.ascontiguousarray(values, "<f4")
-        filled = np.flatnonzero(rows.any(axis=1))
+    def sparse(self, vertices: np.ndarray, rows: np.ndarray, count: int) -> int:
+        """Append what moves (N, 3) of (count, 3) values; return the number of their accessor."""
         places = gltf.AccessorSparseIndices(
-            bufferView=self.view(filled.astype("<u4")), componentType=gltf.UNSIGNED_INT
+            bufferView=self.view(vertices.astype("<u4")), componentType=gltf.UNSIGNED_INT
         )
-        stored = gltf.AccessorSparseValues(bufferView=self.view(rows[filled]))
+        stored = gltf.AccessorSparseValues(bufferView=self.view(rows))
+        # the accessor holds the zeros of all other vertices too
+        ends = rows if len(rows) == count else np.concatenate([rows, np.zeros((1, 3), "<f4")])
         self.accessors.append(
             gltf.Accessor(
                 byteOffset=None,  # not allowed where there is no view, yet written by default
                 componentType=gltf.FLOAT,
-                count=len(rows),
+                count=count,
                 type=gltf.VEC3,
-                min=rows.min(axis=0).tolist(),
-                max=rows.max(axis=0).tolist(),
-                sparse=gltf.Sparse(count=len(filled), indices=places, values=stored),
+                min=ends.min(axis=0).tolist(),
+                max=ends.max(axis=0).tolist(),
+                sparse=gltf.Sparse(count=len(vertices), indices=places, values=stored),
             )
         )
         return len(self.accessors) - 1
@@ -140,12 +141,13 @@ def write(path: str | Path, character: rig.Rig, surface: Surface, motion: Motion
     motion : how it moves
     """
     buffer = _Buffer()
-    used = np.flatnonzero(surface.targets.astype(np.float32).any(axis=(1, 2)))
+    moved = _float32(surface.targets)
+    used = np.flatnonzero([len(vertices) for vertices, _ in moved])
     document = gltf.GLTF2(
         scene=0,
         scenes=[gltf.Scene(nodes=[0])],
         nodes=_nodes(character, motion),
-        meshes=[_mesh(buffer, character, surface, used)],
+        meshes=[_mesh(buffer, character, surface, [moved[row] for row in used], used)],
         materials=[_material()],
         animations=[_animation(buffer, character, motion, used)],
     )
@@ -184,7 +186,23 @@ def _material() -> gltf.Material:
     return gltf.Material(name="skin", pbrMetallicRoughness=matt, doubleSided=True)
 
 
-def _mesh(buffer: _Buffer, character: rig.Rig, surface: Surface, used: np.ndarray) -> gltf.Mesh:
+def _float32(shapes: local_shapes.LocalShapes) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Return the vertices (N,) and float32 differences (N, 3) of each shape that are not zero."""
+    made = []
+    for start, stop in zip(shapes.first[:-1], shapes.first[1:], strict=True):
+        rows = np.ascontiguousarray(shapes.values[start:stop], "<f4")
+        filled = rows.any(axis=1)
+        made.append((shapes.vertices[start:stop][filled], rows[filled]))
+    return made
+
+
+def _mesh(
+    buffer: _Buffer,
+    character: rig.Rig,
+    surface: Surface,
+    moved: list[tuple[np.ndarray, np.ndarray]],
+    used: np.ndarray,
+) -> gltf.Mesh:
     """Return the mesh with its morph targets."""
     attributes = gltf.Attributes(
         POSITION=buffer.dense(character.neutral, gltf.ARRAY_BUFFER),
@@ -196,7 +214,7 @@ def _mesh(buffer: _Buffer, character: rig.Rig, surface: Surface, used: np.ndarra
         attributes=attributes,
         indices=buffer.indices(surface.triangles),
         material=0,
-        targets=[{"POSITION": buffer.sparse(surface.targets[row])} for row in used],
+        targets=[{"POSITION": buffer.sparse(*shape, len(character.neutral))} for shape in moved],
     )
     extras = {
         "targetNames": [surface.names[row] for row in used],

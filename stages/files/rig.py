@@ -1,7 +1,8 @@
 """`rig.npz`: all that is needed to move a character, whatever method drives it.
 
-Arrays: `neutral` (V, D), `deltas` (K, V, D) unmasked differences from it, `masks` (R, V),
-`mask_index` (K,), `sizes` and `corners` of the polygons, `colours` (V, 3) or (0, 3), `pivot` (3,).
+Arrays: `neutral` (V, D); K shapes as unmasked differences from it, of which only the vertices that
+move are held: `first` (K + 1,), `vertices` (N,) and `values` (N, D); `masks` (R, V), `mask_index`
+(K,), `sizes` and `corners` of the polygons, `colours` (V, 3) or (0, 3), `pivot` (3,).
 The header: `form` (`mesh` or `controls`), `names` (K, `<mask>.<shape>`), `mask_names` (R),
 `controls` (V names; empty for a mesh), `unit`, `up_axis`, `face_unit`. A table of controls is a
 rig with V controls of one coordinate (D = 1).
@@ -14,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
+from stages.core import local_shapes
 from stages.files import errors, model
 
 KIND = "rig"
@@ -30,7 +32,7 @@ class Rig:
     mask_names : R names
     controls : V names for a table of controls, else empty
     neutral : (V, D) float64 array [unit]
-    deltas : (K, V, D) float64 array, unmasked [unit]
+    deltas : K shapes of V vertices, unmasked [unit]
     masks : (R, V) float64 array, one at every vertex in sum
     mask_index : (K,) int array
     sizes, corners, colours : polygons and vertex colours as in `mesh.Mesh`
@@ -44,7 +46,7 @@ class Rig:
     mask_names: list[str]
     controls: list[str]
     neutral: np.ndarray
-    deltas: np.ndarray
+    deltas: local_shapes.LocalShapes
     masks: np.ndarray
     mask_index: np.ndarray
     sizes: np.ndarray
@@ -56,7 +58,8 @@ class Rig:
     face_unit: float
 
 
-ARRAYS = ("neutral", "deltas", "masks", "mask_index", "sizes", "corners", "colours", "pivot")
+ARRAYS = ("neutral", "masks", "mask_index", "sizes", "corners", "colours", "pivot")
+SHAPES = ("first", "vertices", "values")
 HEADER = ("names", "mask_names", "controls", "unit", "up_axis", "face_unit")
 
 
@@ -64,7 +67,9 @@ def write(path: str | Path, rig: Rig, sources: Iterable[str | Path] = ()) -> Non
     """Write a rig."""
     form = "controls" if rig.controls else "mesh"
     header = {"form": form} | {name: getattr(rig, name) for name in HEADER}
-    model.write(path, KIND, {name: getattr(rig, name) for name in ARRAYS}, header, sources)
+    arrays = {name: getattr(rig, name) for name in ARRAYS}
+    arrays |= {name: getattr(rig.deltas, name) for name in SHAPES}
+    model.write(path, KIND, arrays, header, sources)
 
 
 def read(path: str | Path, form: str) -> Rig:
@@ -86,7 +91,9 @@ def read(path: str | Path, form: str) -> Rig:
 def read_any(path: str | Path) -> Rig:
     """Read a rig of either form."""
     arrays, header = model.read(path, KIND)
-    return Rig(**{n: arrays[n] for n in ARRAYS}, **{n: header[n] for n in HEADER})
+    deltas = local_shapes.LocalShapes(*(arrays[n] for n in SHAPES), len(arrays["neutral"]))
+    fields = {n: arrays[n] for n in ARRAYS} | {n: header[n] for n in HEADER}
+    return Rig(deltas=deltas, **fields)
 
 
 def vertex_hash(rig: Rig) -> str:

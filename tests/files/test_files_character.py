@@ -5,7 +5,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from stages.core import masks
+from stages.core import local_shapes, masks
 from stages.files import controls, errors, mask_table, rig, sculpt_states, sculpts, weights
 
 NAMES = [str(vertex) for vertex in range(6)]
@@ -99,7 +99,7 @@ def tiny_rig(controls_names=()):
         mask_names=["a", "b"],
         controls=list(controls_names),
         neutral=rng.normal(size=(4, dimensions)),
-        deltas=rng.normal(size=(2, 4, dimensions)),
+        deltas=local_shapes.gather(rng.normal(size=(2, 4, dimensions))),
         masks=np.array([[1, 1, 0.5, 0], [0, 0, 0.5, 1]]),
         mask_index=np.array([0, 1], np.int32),
         sizes=np.array([4], np.int32),
@@ -119,6 +119,8 @@ def test_a_rig_comes_back_as_it_was_and_says_its_form(tmp_path):
         read = rig.read(path, form)
         for name in rig.ARRAYS:
             np.testing.assert_array_equal(getattr(read, name), getattr(made, name))
+        for name in rig.SHAPES:
+            np.testing.assert_array_equal(getattr(read.deltas, name), getattr(made.deltas, name))
         for name in rig.HEADER:
             assert getattr(read, name) == getattr(made, name)
         other = {"mesh": "controls", "controls": "mesh"}[form]
