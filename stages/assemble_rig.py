@@ -31,17 +31,6 @@ def build_parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _pivot(text: str) -> np.ndarray:
-    """Return three coordinates."""
-    try:
-        values = np.array([float(cell) for cell in text.split()])
-    except ValueError:
-        values = np.zeros(0)
-    if values.shape != (3,) or not np.isfinite(values).all():
-        raise errors.InputError("--pivot", f"'{text}' is not three numbers 'x y z'")
-    return values
-
-
 def _masks(path: str, neutral: sculpts.Pose) -> tuple[list[str], np.ndarray]:
     """Return the regions' names and their masks over the vertices."""
     points = neutral.coordinates
@@ -95,7 +84,7 @@ def _refuse_gaps(options: argparse.Namespace, wanted: list[tuple[str, str, Path]
 def main(argv: Sequence[str]) -> None:
     """Read everything, check it, write the rig."""
     options = build_parser().parse_args(argv)
-    pivot = _pivot(options.pivot)
+    pivot = rig.pivot("--pivot", options.pivot)
     neutral = sculpts.read_neutral(options.neutral)
     regions, values = _masks(options.masks, neutral)
     wanted = _wanted(options, regions, values)

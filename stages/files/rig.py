@@ -96,6 +96,23 @@ def read_any(path: str | Path) -> Rig:
     return Rig(deltas=deltas, **fields)
 
 
+def pivot(name: str, text: str) -> np.ndarray:
+    """Return the three coordinates of a setting `x y z`.
+
+    Raises
+    ------
+    errors.InputError
+        if the text is not three finite numbers
+    """
+    try:
+        values = np.array([float(cell) for cell in text.split()])
+    except ValueError:
+        values = np.zeros(0)
+    if values.shape != (3,) or not np.isfinite(values).all():
+        raise errors.InputError(name, f"'{text}' is not three numbers 'x y z'")
+    return values
+
+
 def vertex_hash(rig: Rig) -> str:
     """Return the sha256 over the neutral's float32 positions and its polygons, little-endian.
 
