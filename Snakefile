@@ -8,12 +8,14 @@ min_version("9.27")
 configfile: "config/config.yaml"
 
 
+include: "workflow/rules/checks.smk"
 include: "workflow/rules/common.smk"
 include: "workflow/rules/inputs.smk"
 include: "workflow/rules/capture.smk"
 include: "workflow/rules/align.smk"
 include: "workflow/rules/shapes.smk"
 include: "workflow/rules/weights.smk"
+include: "workflow/rules/rbf.smk"
 include: "workflow/rules/bake.smk"
 include: "workflow/rules/review.smk"
 

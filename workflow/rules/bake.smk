@@ -17,13 +17,15 @@ rule check_sculpts:
         "logs/check_sculpts/{actor}/{character}.log",
     benchmark:
         "logs/check_sculpts/{actor}/{character}.tsv"
+    wildcard_constraints:
+        character=of_method("key_shapes"),
     conda:
         "../envs/stages.yaml"
     threads: 1
     params:
         code=code_of("check_sculpts"),
         neutral=character_path("neutral"),
-        sculpt_folder=sculpt_folder,
+        sculpt_folder=folder_of("sculpts"),
     shell:
         "python -m stages.check_sculpts"
         " --key-shapes {input.key_shapes:q}"
@@ -47,6 +49,8 @@ rule assemble_rig:
         "logs/assemble_rig/{actor}/{character}.log",
     benchmark:
         "logs/assemble_rig/{actor}/{character}.tsv"
+    wildcard_constraints:
+        character=of_method("key_shapes"),
     conda:
         "../envs/stages.yaml"
     threads: 1
@@ -54,7 +58,7 @@ rule assemble_rig:
         code=code_of("assemble_rig"),
         neutral=character_path("neutral"),
         masks=character_path("masks"),
-        sculpt_folder=sculpt_folder,
+        sculpt_folder=folder_of("sculpts"),
         unit=character_cell("unit"),
         up_axis=character_cell("up_axis"),
         pivot=character_cell("pivot"),

@@ -39,7 +39,7 @@ rule train_tracker:
 
 rule track_video:
     input:
-        film,
+        shot_source("video"),
         tracker=tracker_of,
     output:
         tracked="results/shots/{shot}/tracked.parquet",
@@ -52,7 +52,7 @@ rule track_video:
     threads: 1
     params:
         code=code_of("track_video"),
-        video=film_path,
+        video=shot_cell("video"),
     shell:
         "python -m stages.track_video"
         " --tracker {input.tracker:q}"

@@ -30,7 +30,7 @@ def code_of(stage):
 
 def present(paths):
     """Return the sources that exist: a missing one fails its own job, not the whole run."""
-    return [path for path in paths if Path(path).exists()]
+    return [path for path in paths if path and Path(path).exists()]
 
 
 def template(name):
@@ -62,34 +62,19 @@ def validated_show():
     """Read every table of the show; stop with one line at the first fault."""
     try:
         settings = yaml.safe_load((SCHEMAS / "config.yaml").read_text(encoding="utf-8"))
+        for name, setting in settings["properties"].items():
+            if "default" in setting:
+                config.setdefault(name, setting["default"])
         for fault in jsonschema.Draft202012Validator(settings).iter_errors(config):
             place = ".".join(map(str, fault.path)) or "top level"
             raise errors.InputError("config/config.yaml", f"{place}: {fault.message}")
         tables = {name: table(name) for name in TABLES}
         face_regions = regions.read("config/regions.tsv")
         check_references(tables, face_regions)
+        check_sense(tables)
         return tables, face_regions
     except errors.InputError as error:
         sys.exit(f"error: {error}")
-
-
-def check_references(tables, face_regions):
-    """Refuse references to nothing, with table, row and column."""
-    shots = cells(tables["shots"], "shot")
-    basis = [row["shot"] for row in rows_of(tables["shots"], "basis", "yes")]
-    known = {
-        "session": (cells(tables["sessions"], "session"), "sessions.tsv"),
-        "actor": (cells(tables["sessions"], "actor"), "sessions.tsv"),
-        "shots": (shots, "shots.tsv"),
-        "neutral_shot": (basis, "shots.tsv with basis yes"),
-        "shot": (basis, "shots.tsv with basis yes"),
-        "region": (list(face_regions), "regions.tsv"),
-        "character": (cells(tables["characters"], "character"), "characters.tsv"),
-    }
-    for name, columns in TABLES.items():
-        for column in columns:
-            names, where = known[column]
-            show.check_references(f"config/{name}.tsv", tables[name], column, names, where)
 
 
 # every table, and its columns that refer to another one
@@ -109,11 +94,11 @@ def sessions_of(actor):
     return [row["session"] for row in rows_of(SHOW["sessions"], "actor", actor)]
 
 
-def shots_of(actor, basis=("yes", "no")):
-    """Return the rows of an actor's shots, in the table's order."""
+def shots_of(actor, points, basis=("yes", "no")):
+    """Return the rows of an actor's shots that have video points, or markers, in order."""
     wanted = sessions_of(actor)
-    shots = [row.cells for row in SHOW["shots"]]
-    return [shot for shot in shots if shot["session"] in wanted and shot["basis"] in basis]
+    shots = [row.cells for row in SHOW["shots"] if row.cells["session"] in wanted]
+    return [shot for shot in shots if shot["basis"] in basis and has_points(SHOW, shot, points)]
 
 
 def session_of(shot):
@@ -127,10 +112,16 @@ def cast_takes():
     takes = []
     for row in SHOW["cast"]:
         wanted = show.listed(row.cells["shots"])
-        for shot in shots_of(row.cells["actor"]):
+        for shot in shots_of(row.cells["actor"], row.cells["points"]):
             if not wanted or shot["shot"] in wanted:
                 takes.append((shot["shot"], row.cells["character"]))
     return takes
+
+
+def of_method(*methods):
+    """Return the pattern of the characters that are driven by one of some methods."""
+    rows = [row.cells for row in SHOW["characters"]]
+    return "|".join(row["character"] for row in rows if row["method"] in methods) or "-"
 
 
 def of_kind(kind):
@@ -140,9 +131,7 @@ def of_kind(kind):
     return "|".join(r["character"] for r in rows if r["neutral"].endswith(".csv") == wanted) or "-"
 
 
-def sculpts_of(character):
-    """Return the sculpts that lie in a character's folder, sorted."""
+def files_of(character, pattern):
+    """Return the files in a character's folder that fit a pattern, sorted."""
     row = row_of(SHOW["characters"], "character", character)
-    suffix = Path(row["neutral"]).suffix
-    found = Path(row["folder"], "sculpts").glob(f"*/*{suffix}")
-    return sorted(map(str, found))
+    return sorted(map(str, Path(row["folder"]).glob(pattern)))

@@ -7,7 +7,7 @@ curves of named controls, and the run's report.
 
 rule render_preview:
     input:
-        film,
+        shot_source("video"),
         tracked="results/shots/{shot}/tracked.parquet",
         point_set="config/point_set.tsv",
         regions="config/regions.tsv",
@@ -33,7 +33,7 @@ rule render_preview:
     threads: 1
     params:
         code=code_of("render_preview"),
-        video=film_path,
+        video=shot_cell("video"),
     shell:
         "python -m stages.render_preview"
         " --video {params.video:q}"
@@ -51,7 +51,7 @@ rule render_preview:
 
 rule render_controls:
     input:
-        film,
+        shot_source("video"),
         tracked="results/shots/{shot}/tracked.parquet",
         point_set="config/point_set.tsv",
         regions="config/regions.tsv",
@@ -75,7 +75,7 @@ rule render_controls:
     threads: 1
     params:
         code=code_of("render_controls"),
-        video=film_path,
+        video=shot_cell("video"),
     shell:
         "python -m stages.render_controls"
         " --video {params.video:q}"

@@ -1,0 +1,110 @@
+"""What the tables of a show must say together, beyond what each says alone; no rules."""
+
+
+def has_points(tables, shot, points):
+    """Return whether a shot has markers, or film points that are tracked.
+
+    A film beside markers is tracked only where its session has labels: else it is for people.
+    """
+    if points == "markers":
+        return bool(shot["markers"])
+    same = [row.cells for row in tables["shots"] if row.cells["session"] == shot["session"]]
+    labelled = any(row["labels"] for row in same)
+    return bool(shot["video"]) and (labelled or not shot["markers"])
+
+
+def refuse(name, row, column, message):
+    """Stop with the place of a cell."""
+    raise errors.InputError(f"config/{name}.tsv", f"line {row.line}, column {column}: {message}")
+
+
+def check_references(tables, face_regions):
+    """Refuse references to nothing, with table, row and column."""
+    shots = cells(tables["shots"], "shot")
+    basis = [row["shot"] for row in rows_of(tables["shots"], "basis", "yes")]
+    known = {
+        "session": (cells(tables["sessions"], "session"), "sessions.tsv"),
+        "actor": (cells(tables["sessions"], "actor"), "sessions.tsv"),
+        "shots": (shots, "shots.tsv"),
+        "neutral_shot": (basis, "shots.tsv with basis yes"),
+        "shot": (basis, "shots.tsv with basis yes"),
+        "region": (list(face_regions), "regions.tsv"),
+        "character": (cells(tables["characters"], "character"), "characters.tsv"),
+    }
+    for name, columns in TABLES.items():
+        for column in columns:
+            names, where = known[column]
+            show.check_references(f"config/{name}.tsv", tables[name], column, names, where)
+
+
+def check_sense(tables):
+    """Refuse rows that ask for what other cells do not give."""
+    for row in tables["shots"]:
+        check_shot(row)
+    for row in tables["sessions"]:
+        check_session(tables, row)
+    for row in tables["characters"]:
+        check_character(row)
+    for row in tables["cast"]:
+        check_cast(tables, row)
+
+
+def check_shot(row):
+    """Refuse a shot without points, or with cells that need others."""
+    shot = row.cells
+    if not (shot["video"] or shot["markers"]):
+        refuse("shots", row, "video", "the shot has no film and no markers; give one")
+    for column, needed in (("labels", "video"), ("sync_offset_s", "markers")):
+        if shot[column] and not shot[needed]:
+            refuse("shots", row, column, f"is of no use without {needed}; clear it")
+    if shot["transcript"] and not (shot["video"] or shot["sound"]):
+        refuse("shots", row, "transcript", "has no sound to be found in; give sound or video")
+    if shot["markers"] and shot["video"] and not (shot["sound"] or shot["sync_offset_s"]):
+        message = (
+            "film and markers share no clock; give the marker system's sound, or sync_offset_s"
+        )
+        refuse("shots", row, "sound", message)
+
+
+def check_session(tables, row):
+    """Refuse a session whose neutral does not show all the points of its shots."""
+    session = row.cells
+    shots = [
+        other.cells for other in tables["shots"] if other.cells["session"] == session["session"]
+    ]
+    neutral = row_of(tables["shots"], "shot", session["neutral_shot"])
+    for points in ("video", "markers"):
+        if any(has_points(tables, shot, points) for shot in shots):
+            if not has_points(tables, neutral, points):
+                message = f"'{neutral['shot']}' has no {points} points, other shots of it have"
+                refuse("sessions", row, "neutral_shot", message + "; choose one with both")
+    if any(shot["markers"] for shot in shots) and not session["unit_markers"]:
+        message = "is blank, yet its shots have markers; name two, such as those at the eye corners"
+        refuse("sessions", row, "unit_markers", message)
+
+
+def check_character(row):
+    """Refuse a character without the file that its method needs."""
+    needed = {"key_shapes": "masks", "blendshapes": "virtual_markers"}
+    column = needed.get(row.cells["method"])
+    if column and not row.cells[column]:
+        refuse("characters", row, column, f"method {row.cells['method']} needs it; name the file")
+
+
+def check_cast(tables, row):
+    """Refuse a take whose points do not exist, or do not fit the character's method."""
+    method = row_of(tables["characters"], "character", row.cells["character"])["method"]
+    points, wanted = row.cells["points"], show.listed(row.cells["shots"])
+    if points == "markers" and method == "key_shapes":
+        message = "method key_shapes is driven by the film; write video, or choose another method"
+        refuse("cast", row, "points", message)
+    sessions = [
+        other.cells["session"]
+        for other in tables["sessions"]
+        if other.cells["actor"] == row.cells["actor"]
+    ]
+    shots = [other.cells for other in tables["shots"] if other.cells["session"] in sessions]
+    driven = [shot["shot"] for shot in shots if has_points(tables, shot, points)]
+    for name in wanted or ([] if driven else ["any shot of this actor"]):
+        if name not in driven:
+            refuse("cast", row, "points", f"{name} has no {points} points; correct the cell")
