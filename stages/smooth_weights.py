@@ -1,8 +1,20 @@
-"""Bring a take's weights and head motion to the character's rate, with untracked frames filled.
+"""Bring a take's weights and head motion to the character's rate, filled, filtered and limited.
 
-Weights are interpolated linearly and rotations along the great circle; at the source's own rate
-every tracked frame comes through unchanged. Frames that were not tracked are interpolated between
-their neighbours, and `confidence` is 0 there.
+In this order, because each step needs the one before:
+
+1. Frames that were not tracked are interpolated between their neighbours; `confidence` is 0 there.
+2. Every channel is multiplied by its gain and moved by its offset, so that all that follows is in
+   the rig's terms.
+3. Blinks and lip closures are found, at the source's rate, where they are sharpest.
+4. The multiresolution filter removes what lies above 10 Hz, or a third of the character's rate
+   where that is lower than the source's, divided by the channel's smoothing; blinks and closures
+   are left. So nothing is aliased by the next step.
+5. Weights are interpolated linearly and rotations along the great circle; at the source's own rate
+   every frame comes through unchanged.
+6. Limits come last, so that they hold in what is baked. Weights of a rig of blendshapes stay in
+   0..1 unless the table of channels says otherwise, those of key shapes have no limits.
+
+Without smoothing 3 and 4 are left out. Head motion is not filtered.
 """
 
 import argparse
@@ -12,20 +24,38 @@ from fractions import Fraction
 import numpy as np
 
 from stages import cli
-from stages.core import resample
-from stages.files import errors, rig, series, weights
+from stages.core import kept_moments, motion_filter, resample
+from stages.files import channels, errors, lip_gap, rig, series, weights
 
 HEAD_ROTATION = [f"rotation.{axis}" for axis in "xyzw"]
 HEAD_REST = [f"translation.{axis}" for axis in "xyz"] + ["scale"]
 FILM = "film"
+# the limits of what each method solves
+LIMITS = {"key_weights": (-np.inf, np.inf), "predicted": (0.0, 1.0), "solved": (0.0, 1.0)}
+CUTOFF_HZ = 10.0
+CUTOFF_OF_RATE = 1 / 3
 
 
 def build_parser() -> argparse.ArgumentParser:
     """Return the stage's command line."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--key-weights", required=True, help="key_weights.parquet of the shot")
+    parser.add_argument(
+        "--solution", required=True, help="key_weights, predicted or solved .parquet of the take"
+    )
     parser.add_argument("--head-motion", required=True, help="head_motion.parquet of the shot")
+    parser.add_argument("--expression", required=True, help="expression.parquet of the shot")
     parser.add_argument("--rig", required=True, help="rig.npz of the character")
+    parser.add_argument(
+        "--channels", required=True, help="table of gains, offsets and limits, or empty"
+    )
+    parser.add_argument(
+        "--smoothing", required=True, choices=["none", "multiresolution"], help="the motion filter"
+    )
+    parser.add_argument(
+        "--lip-points",
+        required=True,
+        help="upper,lower: points of the expression whose distance shows lip closures, or empty",
+    )
     parser.add_argument(
         "--rate", required=True, help="frames per second, such as 30000/1001; film: the source's"
     )
@@ -77,8 +107,8 @@ def _head(
     path = options.head_motion
     motion = series.read(path, "head_motion")
     if not np.array_equal(motion.frame, frames):
-        message = f"its {len(motion.frame)} frames are not those of {options.key_weights}"
-        raise errors.InputError(path, message + ": run align_head and solve_weights again")
+        message = f"its {len(motion.frame)} frames are not those of {options.solution}"
+        raise errors.InputError(path, message + ": run align_head and the solve again")
     turns, rest = _columns(motion, path, HEAD_ROTATION), _columns(motion, path, HEAD_REST)
     observed = np.isfinite(turns).all(axis=1) & np.isfinite(rest).all(axis=1)
     turns = _filled(path, turns, spherical=True)
@@ -86,31 +116,59 @@ def _head(
     return resample.continuous(turns), _filled(path, rest), observed
 
 
+def _smoothed(
+    options: argparse.Namespace,
+    values: np.ndarray,
+    source: series.Series,
+    rate: Fraction,
+    asked: channels.Channels,
+) -> np.ndarray:
+    """Filter the curves (T, K) at the source's rate."""
+    if options.smoothing == "none":
+        return values
+    gap = lip_gap.read(options.expression, options.lip_points, source.frame)
+    highest = min(CUTOFF_HZ, rate * CUTOFF_OF_RATE) if rate < source.rate else CUTOFF_HZ
+    smooth = asked.strength > 0
+    cutoff = np.full(len(smooth), np.inf)
+    cutoff[smooth] = float(highest) / asked.strength[smooth]
+    per_second = float(source.rate)
+    events = kept_moments.find(values, asked.names, asked.keep, per_second, gap)
+    return motion_filter.filtered(values, per_second, cutoff, events)
+
+
 def main(argv: Sequence[str]) -> None:
-    """Read, fill, resample, write."""
+    """Read, fill, adjust, filter, resample, limit, write."""
     options = build_parser().parse_args(argv)
     shapes = rig.read_any(options.rig).names
-    solved = series.read(options.key_weights, "key_weights")
+    solved = series.read(options.solution, tuple(LIMITS))
+    asked = channels.read(options.channels, shapes, *LIMITS[solved.meta["kind"]])
     gaps = np.flatnonzero(np.diff(solved.frame) != 1)
     if len(solved.frame) == 0 or len(gaps):
         where = f"a gap after frame {solved.frame[gaps[0]]}" if len(gaps) else "no frame"
-        raise errors.InputError(options.key_weights, f"has {where}: run merge_capture again")
-    values = _columns(solved, options.key_weights, [*shapes, "confidence"])
+        raise errors.InputError(options.solution, f"has {where}: run merge_capture again")
+    values = _columns(solved, options.solution, [*shapes, "confidence"])
     turns, rest, head_seen = _head(options, solved.frame)
     observed = np.isfinite(values).all(axis=1) & head_seen
-    filled = _filled(options.key_weights, values)
+    filled = _filled(options.solution, values)
     filled[~observed, -1] = 0.0
-
     rate = _rate(options.rate, solved.rate)
+    scaled = asked.gain * filled[:, :-1]
+    # an addition of zero would lose the sign of a zero
+    adjusted = np.where(asked.offset == 0.0, scaled, scaled + asked.offset)
+    filled[:, :-1] = _smoothed(options, adjusted, solved, rate, asked)
+
     span = int(solved.frame[0]), len(solved.frame), solved.rate, rate
     frames = resample.covered_frames(*span)
     place = resample.positions(frames, *span)
     moved = resample.linear(filled, *place)
+    moved[:, :-1] = np.clip(moved[:, :-1], asked.low, asked.high)
     either = resample.linear(observed.astype(float), *place) < 1.0
     columns = dict(zip([*shapes, "confidence"], moved.T, strict=True))
     columns["confidence"] = np.where(either, 0.0, columns["confidence"])
     columns |= weights.head_columns(resample.slerp(turns, *place), resample.linear(rest, *place))
-    sources = [options.key_weights, options.head_motion, options.rig]
+    sources = [options.solution, options.head_motion, options.rig]
+    sources += [options.channels] if options.channels else []
+    sources += [options.expression] if options.smoothing != "none" and options.lip_points else []
     weights.write(options.weights, options.csv, frames, columns, rate, sources)
 
 

@@ -1,6 +1,7 @@
 """Parquet tables of ours: Arrow columns, and a JSON header in the file's metadata."""
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 
 import pyarrow as pa
@@ -24,8 +25,8 @@ def write(path: str | Path, table: pa.Table, header: dict) -> None:
         )
 
 
-def read(path: str | Path, kind: str) -> tuple[pa.Table, dict]:
-    """Read the table and the header of a file of one kind.
+def read(path: str | Path, kind: str | Sequence[str]) -> tuple[pa.Table, dict]:
+    """Read the table and the header of a file of one kind, or of one of several.
 
     Raises
     ------

@@ -4,7 +4,7 @@ No date and no absolute path, so that the same inputs give the same bytes anywhe
 """
 
 import hashlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -41,8 +41,8 @@ def stamp(kind: str, sources: Iterable[str | Path] = ()) -> dict:
     }
 
 
-def check(path: str | Path, meta: dict, kind: str) -> None:
-    """Refuse a file of another kind or of a layout from another version.
+def check(path: str | Path, meta: dict, kind: str | Sequence[str]) -> None:
+    """Refuse a file of another kind, or of none of several, or of another version's layout.
 
     Raises
     ------
@@ -50,8 +50,10 @@ def check(path: str | Path, meta: dict, kind: str) -> None:
         naming the file, what was expected and what was found
     """
     found = meta.get("kind", "nothing")
-    if found != kind:
-        message = f"this is a file of kind '{found}', expected '{kind}': correct the path"
+    kinds = [kind] if isinstance(kind, str) else kind
+    if found not in kinds:
+        expected = " or ".join(f"'{name}'" for name in kinds)
+        message = f"this is a file of kind '{found}', expected {expected}: correct the path"
         raise errors.InputError(path, message)
     version = meta.get("layout_version")
     if version != LAYOUT_VERSION:

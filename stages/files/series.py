@@ -66,8 +66,8 @@ def write(
     parquet.write(path, pa.table(arrays), header)
 
 
-def read(path: str | Path, kind: str) -> Series:
-    """Read a time series of one kind.
+def read(path: str | Path, kind: str | Sequence[str]) -> Series:
+    """Read a time series of one kind, or of one of several; `meta["kind"]` says which.
 
     Raises
     ------

@@ -148,10 +148,23 @@ class SmallTake:
         } | changed_by(changed)
         return [*words(options), "--sculpts", *self.sculpts]
 
-    def weights_options(self, rate="film", head="apply", rig="rig.npz"):
+    def weights_options(
+        self,
+        rate="film",
+        head="apply",
+        rig="rig.npz",
+        solution="key_weights.parquet",
+        channels="",
+        smoothing="none",
+        lip_points="",
+    ):
         """Return the command line of smooth_weights."""
         options = {
-            "key-weights": f"{self.folder}/key_weights.parquet",
+            "solution": f"{self.folder}/{solution}",
+            "expression": f"{self.folder}/expression.parquet",
+            "channels": channels,
+            "smoothing": smoothing,
+            "lip-points": lip_points,
             "head-motion": f"{self.folder}/head_motion.parquet",
             "rig": f"{self.folder}/{rig}",
             "rate": rate,

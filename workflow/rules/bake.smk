@@ -80,8 +80,9 @@ rule assemble_rig:
 
 rule smooth_weights:
     input:
-        key_weights="results/shots/{shot}/key_weights.parquet",
+        solution="results/shots/{shot}/key_weights.parquet",
         head_motion="results/shots/{shot}/head_motion.parquet",
+        expression="results/shots/{shot}/expression.parquet",
         rig=rig_of,
     output:
         weights="results/takes/{shot}/{character}/weights.parquet",
@@ -95,13 +96,20 @@ rule smooth_weights:
     threads: 1
     params:
         code=code_of("smooth_weights"),
+        channels="",
+        smoothing="none",
+        lip_points="",
         rate=character_cell("rate"),
         head=character_cell("head"),
     shell:
         "python -m stages.smooth_weights"
-        " --key-weights {input.key_weights:q}"
+        " --solution {input.solution:q}"
         " --head-motion {input.head_motion:q}"
+        " --expression {input.expression:q}"
         " --rig {input.rig:q}"
+        " --channels {params.channels:q}"
+        " --smoothing {params.smoothing:q}"
+        " --lip-points {params.lip_points:q}"
         " --rate {params.rate:q}"
         " --head {params.head:q}"
         " --weights {output.weights:q}"

@@ -1,0 +1,68 @@
+"""Take jitter out of weights and leave blinks and lip closures in, without delay.
+
+The bands above a frequency are removed (`multiresolution`). In an event (`motion_events`) a band
+keeps the part that is more than jitter there: `g = 1 - TRUST s^2 / m`, not below 0, with `s` the
+band's jitter over the take and `m` its mean square near the frame (the local Wiener filter of Lee
+1980, here by band). The gain between is `g_k + e (1 - g_k) g` with the event's envelope `e`.
+"""
+
+import numpy as np
+
+from stages.core import motion_events, multiresolution
+
+# a mean square near a frame is this much above that of jitter before it counts
+TRUST = 1.5
+
+
+def filtered(values: np.ndarray, rate: float, cutoff: np.ndarray, events: np.ndarray) -> np.ndarray:
+    """Filter curves below a frequency of each, and leave events as they are.
+
+    Parameters
+    ----------
+    values : (T, N) float array, finite
+    rate : frames per second
+    cutoff : (N,) float array, above zero [Hz]; a curve with an infinite one comes back unchanged
+    events : (T, N) float array in 0..1, how far a frame belongs to an event of the curve
+
+    Returns
+    -------
+    (T, N) float array
+
+    Raises
+    ------
+    ValueError
+        if the shapes do not fit, a value is not finite or a frequency is not above zero
+    """
+    if values.shape != events.shape or values.shape[1:] != cutoff.shape:
+        shapes = f"values {values.shape}, cutoff {cutoff.shape} and events {events.shape}"
+        raise ValueError(f"{shapes} are no (T, N), (N,) and (T, N)")
+    if not (cutoff > 0).all():
+        raise ValueError(f"cutoff {cutoff.min()} is not above zero")
+    made = np.array(values, float)
+    moved = np.isfinite(cutoff)
+    if not moved.any():
+        return made
+    levels = multiresolution.levels_above(rate, cutoff[moved].min(), len(values))
+    held = events.any(axis=0)
+    for chosen, of_events in ((moved & ~held, None), (moved & held, events)):
+        if chosen.any():
+            gains = multiresolution.gains_below(rate, cutoff[chosen], levels)
+            part = values[:, chosen]
+            made[:, chosen] = (
+                multiresolution.filtered(part, gains)
+                if of_events is None
+                else _around_events(part, gains, of_events[:, chosen])
+            )
+    return made
+
+
+def _around_events(values: np.ndarray, gains: np.ndarray, events: np.ndarray) -> np.ndarray:
+    """Filter curves (T, N) by gains (K, N) except in their events (T, N)."""
+    *high, made = multiresolution.bands(values, len(gains))
+    for level, (band, gain) in enumerate(zip(high, gains, strict=True)):
+        jitter = motion_events.noise(band) ** 2
+        near = multiresolution.smoothed(band**2, 2**level)
+        # an exact zero has nothing to keep
+        trusted = 1.0 - TRUST * jitter / np.where(near > 0.0, near, 1.0)
+        made = made + (gain + events * (1.0 - gain) * np.clip(trusted, 0.0, 1.0)) * band
+    return made
