@@ -1,6 +1,6 @@
 """From weights and sculpts to a moving character.
 
-Needs key_weights.parquet, head_motion.parquet and the character's folder. Makes the state of the
+Needs the weights that a method has found, head_motion.parquet and the character's folder. Makes the state of the
 sculpts and rig.npz of each actor and character, and for each take weights.parquet, weights.csv and
 the mesh (mesh.exr, mesh.json, mesh.pc2, mesh.glb) or the curves of named controls.
 """
@@ -80,7 +80,8 @@ rule assemble_rig:
 
 rule smooth_weights:
     input:
-        solution="results/shots/{shot}/key_weights.parquet",
+        character_source("channels"),
+        solution=solution_of,
         head_motion="results/shots/{shot}/head_motion.parquet",
         expression="results/shots/{shot}/expression.parquet",
         rig=rig_of,
@@ -96,9 +97,9 @@ rule smooth_weights:
     threads: 1
     params:
         code=code_of("smooth_weights"),
-        channels="",
-        smoothing="none",
-        lip_points="",
+        channels=character_path("channels"),
+        smoothing=character_cell("smoothing"),
+        lip_points=session_cell("lip_points"),
         rate=character_cell("rate"),
         head=character_cell("head"),
     shell:
