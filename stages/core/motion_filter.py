@@ -44,25 +44,26 @@ def filtered(values: np.ndarray, rate: float, cutoff: np.ndarray, events: np.nda
         return made
     levels = multiresolution.levels_above(rate, cutoff[moved].min(), len(values))
     held = events.any(axis=0)
-    for chosen, of_events in ((moved & ~held, None), (moved & held, events)):
-        if chosen.any():
-            gains = multiresolution.gains_below(rate, cutoff[chosen], levels)
-            part = values[:, chosen]
-            made[:, chosen] = (
-                multiresolution.filtered(part, gains)
-                if of_events is None
-                else _around_events(part, gains, of_events[:, chosen])
-            )
+    for kept in (False, True):
+        columns = np.flatnonzero(moved & (held == kept))
+        for first in range(0, len(columns), multiresolution.COLUMNS):
+            part = columns[first : first + multiresolution.COLUMNS]
+            gains = multiresolution.gains_below(rate, cutoff[part], levels)
+            curves = multiresolution.filtered(values[:, part], gains)
+            if kept:
+                curves += _of_events(values[:, part], gains, events[:, part])
+            made[:, part] = curves
     return made
 
 
-def _around_events(values: np.ndarray, gains: np.ndarray, events: np.ndarray) -> np.ndarray:
-    """Filter curves (T, N) by gains (K, N) except in their events (T, N)."""
-    *high, made = multiresolution.bands(values, len(gains))
+def _of_events(values: np.ndarray, gains: np.ndarray, events: np.ndarray) -> np.ndarray:
+    """Return what gains (K, N) take from curves (T, N) in their events (T, N) but for jitter."""
+    made = np.zeros(values.shape)
+    high = list(multiresolution.bands(values, len(gains)))[:-1]
     for level, (band, gain) in enumerate(zip(high, gains, strict=True)):
         jitter = motion_events.noise(band) ** 2
         near = multiresolution.smoothed(band**2, 2**level)
         # an exact zero has nothing to keep
         trusted = 1.0 - TRUST * jitter / np.where(near > 0.0, near, 1.0)
-        made = made + (gain + events * (1.0 - gain) * np.clip(trusted, 0.0, 1.0)) * band
+        made += events * (1.0 - gain) * np.clip(trusted, 0.0, 1.0) * band
     return made
