@@ -1,4 +1,4 @@
-"""Render what a take of named controls looks like: the film beside the moving curves."""
+"""Render a take of named controls: the film or the markers beside the moving curves."""
 
 import argparse
 from collections.abc import Sequence
@@ -8,14 +8,17 @@ import numpy as np
 
 from stages import cli
 from stages.core import curve_panel, preview
-from stages.files import film, series, tracked_film
+from stages.files import series, take_source
 
 
 def build_parser() -> argparse.ArgumentParser:
     """Return the stage's command line."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--video", required=True, help="the shot's film")
-    parser.add_argument("--tracked", required=True, help="tracked.parquet of the shot")
+    parser.add_argument("--video", required=True, help="the shot's film, or empty")
+    parser.add_argument("--tracked", nargs="*", default=[], help="tracked.parquet, if it is shown")
+    parser.add_argument(
+        "--performance", nargs="*", default=[], help="performance.parquet, if markers are shown"
+    )
     parser.add_argument("--point-set", required=True, help="table of contours")
     parser.add_argument("--regions", required=True, help="table of regions; each has a colour")
     parser.add_argument("--controls", required=True, help="controls.parquet of the take")
@@ -29,14 +32,16 @@ def main(argv: Sequence[str]) -> None:
     """Render picture by picture."""
     cv2.setNumThreads(1)
     options = build_parser().parse_args(argv)
-    tracked = tracked_film.read(options.video, options.tracked, options.point_set, options.regions)
+    source = take_source.read(
+        options.video, options.tracked, options.performance, options.point_set, options.regions
+    )
     curves = series.read(options.controls, "controls")
     values = np.stack(list(curves.columns.values()), axis=1)
     shown = curve_panel.liveliest(values)
     names = [list(curves.columns)[column] for column in shown]
     values = values[:, shown]
     lanes = curve_panel.draw_lanes(names, values, preview.HEIGHT)
-    progress = cli.Progress("preview", len(tracked.frame))
+    progress = cli.Progress("preview", source.count)
 
     def curves_at(time_s: float) -> np.ndarray:
         progress.step()
@@ -44,9 +49,7 @@ def main(argv: Sequence[str]) -> None:
         return curve_panel.draw_playhead(lanes, values, row)
 
     title = f"{options.shot}, {options.character}"
-    film_pictures = tracked_film.pictures(tracked)
-    shown = preview.frames(film_pictures, tracked.arrays, tracked.outlines, title, curves_at)
-    tracked_film.write(options.preview, tracked, shown, preview.size(*film.size(options.video)))
+    take_source.write(options.preview, source, title, curves_at)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Render what a take looks like: the film with its tracked contours beside the moving character."""
+"""Render what a take looks like: the film or the markers beside the moving character."""
 
 import argparse
 from collections.abc import Callable, Sequence
@@ -8,7 +8,7 @@ import numpy as np
 
 from stages import cli
 from stages.core import head_transform, polygons, portrait, preview
-from stages.files import errors, exr, film, rig, tracked_film
+from stages.files import errors, exr, rig, take_source
 
 # the camera is fixed by so many frames of the take, without this share at either end
 SAMPLED_FRAMES = 100
@@ -18,8 +18,11 @@ STRAY = 0.02
 def build_parser() -> argparse.ArgumentParser:
     """Return the stage's command line."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--video", required=True, help="the shot's film")
-    parser.add_argument("--tracked", required=True, help="tracked.parquet of the shot")
+    parser.add_argument("--video", required=True, help="the shot's film, or empty")
+    parser.add_argument("--tracked", nargs="*", default=[], help="tracked.parquet, if it is shown")
+    parser.add_argument(
+        "--performance", nargs="*", default=[], help="performance.parquet, if markers are shown"
+    )
     parser.add_argument("--point-set", required=True, help="table of contours")
     parser.add_argument("--regions", required=True, help="table of regions; each has a colour")
     parser.add_argument("--exr", required=True, help="mesh.exr of the take")
@@ -55,23 +58,23 @@ def main(argv: Sequence[str]) -> None:
     """Render picture by picture."""
     cv2.setNumThreads(1)
     options = build_parser().parse_args(argv)
-    tracked = tracked_film.read(options.video, options.tracked, options.point_set, options.regions)
+    source = take_source.read(
+        options.video, options.tracked, options.performance, options.point_set, options.regions
+    )
     character = rig.read(options.rig, "mesh")
     description = exr.read_json(options.json)
     if description["vertex_hash"] != rig.vertex_hash(character):
         raise errors.InputError(options.json, f"is not baked from {options.rig}: bake again")
     baked = exr.Reader(options.exr, description)
     paint = _painter(character, baked)
-    progress = cli.Progress("preview", len(tracked.frame))
+    progress = cli.Progress("preview", source.count)
 
     def character_at(time_s: float) -> np.ndarray:
         progress.step()
         return paint(baked.frame(baked.nearest(time_s)))
 
     title = f"{options.shot}, {options.character}"
-    film_pictures = tracked_film.pictures(tracked)
-    shown = preview.frames(film_pictures, tracked.arrays, tracked.outlines, title, character_at)
-    tracked_film.write(options.preview, tracked, shown, preview.size(*film.size(options.video)))
+    take_source.write(options.preview, source, title, character_at)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 """Pictures of a preview: the film with its contours, the character beside it, a caption below."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -17,6 +18,24 @@ FONT_SIZE = 0.5
 MARGIN = 12
 BASE = 21
 
+
+class Moment(NamedTuple):
+    """Hold what the performance looks like at one time.
+
+    Attributes
+    ----------
+    frame : its number
+    time_s : its time [s]
+    picture : (HEIGHT, W, 3) uint8 array
+    confidence : 0..1
+    """
+
+    frame: int
+    time_s: float
+    picture: np.ndarray
+    confidence: float
+
+
 # rows of the contour's points, whether it is closed, number of its region (-1: none)
 Outline = tuple[np.ndarray, bool, int]
 
@@ -26,9 +45,9 @@ def film_width(width: int, height: int) -> int:
     return max(2, 2 * round(width * HEIGHT / height / 2))
 
 
-def size(width: int, height: int) -> tuple[int, int]:
-    """Return the width and height of the preview of a film of some size [px]."""
-    return film_width(width, height) + HEIGHT, HEIGHT + STRIP_HEIGHT
+def size(width: int) -> tuple[int, int]:
+    """Return the width and height of a preview whose left side has some width [px]."""
+    return width + HEIGHT, HEIGHT + STRIP_HEIGHT
 
 
 def film_half(
@@ -76,19 +95,13 @@ def caption(width: int, left: str, right: str, warning: bool) -> np.ndarray:
 
 
 def frames(
-    pictures: Iterable[tuple[int, np.ndarray]],
-    tracked: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray],
-    outlines: Sequence[Outline],
-    title: str,
-    character: Callable[[float], np.ndarray],
+    moments: Iterable[Moment], title: str, character: Callable[[float], np.ndarray]
 ) -> Iterator[tuple[float, np.ndarray]]:
     """Put a preview's pictures together.
 
     Parameters
     ----------
-    pictures : row among the T tracked frames, and the film's picture
-    tracked : frame (T,), time_s (T,), points (T, P, 2), their confidence (T, P), confidence (T,)
-    outlines : the contours
+    moments : what the performance looks like, in order
     title : first words of the caption
     character : gives the (HEIGHT, HEIGHT, 3) uint8 picture of the character at a time [s]
 
@@ -96,12 +109,12 @@ def frames(
     ------
     time from the first picture [s], and (H, W, 3) uint8 picture
     """
-    frame, time_s, points, point_confidence, confidence = tracked
-    for row, picture in pictures:
-        left = film_half(picture, outlines, points[row], point_confidence[row])
-        top = np.concatenate([left, character(time_s[row])], axis=1)
-        sure = float(np.nan_to_num(confidence[row]))
+    start_s = None
+    for frame, time_s, picture, confidence in moments:
+        start_s = time_s if start_s is None else start_s
+        top = np.concatenate([picture, character(time_s)], axis=1)
+        sure = float(np.nan_to_num(confidence))
         words = f"confidence {sure:.2f}" if sure > 0 else "not tracked"
-        place = f"{title}   frame {frame[row]}   {time_s[row]:.2f} s"
+        place = f"{title}   frame {frame}   {time_s:.2f} s"
         strip = caption(top.shape[1], place, words, sure < overlay.SURE)
-        yield time_s[row] - time_s[0], np.concatenate([top, strip])
+        yield time_s - start_s, np.concatenate([top, strip])

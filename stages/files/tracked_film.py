@@ -1,12 +1,12 @@
 """A film together with what was tracked in it, picture by picture."""
 
 import dataclasses
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
-from stages.files import film, film_writer, point_set, regions, series
+from stages.files import film, point_set, regions, series
 
 # rows of the contour's points, whether it is closed, number of its region (-1: none)
 Outline = tuple[np.ndarray, bool, int]
@@ -33,11 +33,6 @@ class TrackedFilm:
     point_confidence: np.ndarray
     confidence: np.ndarray
     outlines: list[Outline]
-
-    @property
-    def arrays(self) -> tuple[np.ndarray, ...]:
-        """All that has a value for each frame."""
-        return self.frame, self.time_s, self.points, self.point_confidence, self.confidence
 
 
 def read(
@@ -88,20 +83,3 @@ def pictures(tracked: TrackedFilm) -> Iterator[tuple[int, np.ndarray]]:
     for number, (_, picture) in enumerate(film.read_frames(tracked.video)):
         if number in rows:
             yield rows[number], picture
-
-
-def write(
-    path: str | Path,
-    tracked: TrackedFilm,
-    shown: Iterable[tuple[float, np.ndarray]],
-    size: tuple[int, int],
-) -> None:
-    """Write times [s] and pictures of some size [px] as a film with a tracked film's sound.
-
-    Raises
-    ------
-    errors.InputError
-        if the sound cannot be decoded
-    """
-    rate, start_s = film.nominal_rate(tracked.video), tracked.time_s[0]
-    film_writer.write(path, shown, size, rate, tracked.video, start_s)

@@ -32,7 +32,6 @@ def test_points_are_scaled_with_the_film_and_both_halves_stand_side_by_side():
     character = np.full((preview.HEIGHT, preview.HEIGHT, 3), 7, np.uint8)
     points = np.full((1, 2, 2), np.nan)
     points[0, 0] = [160, 60]
-    tracked = (np.array([9]), np.array([1.5]), points, np.ones((1, 2)), np.array([0.9]))
     outlines = [(np.array([0]), False, 0), (np.array([1]), False, 1)]
     times = []
 
@@ -40,8 +39,10 @@ def test_points_are_scaled_with_the_film_and_both_halves_stand_side_by_side():
         times.append(time_s)
         return character
 
-    ((time_s, whole),) = preview.frames([(0, film)], tracked, outlines, "talk, radio", drawn_at)
-    width, height = preview.size(320, 240)
+    left = preview.film_half(film, outlines, points[0], np.ones(2))
+    moments = [preview.Moment(9, 1.5, left, 0.9)]
+    ((time_s, whole),) = preview.frames(moments, "talk, radio", drawn_at)
+    width, height = preview.size(preview.film_width(320, 240))
     assert whole.shape == (height, width, 3)
     assert width % 2 == height % 2 == 0
     assert time_s == 0.0

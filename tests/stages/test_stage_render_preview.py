@@ -6,7 +6,7 @@ import pytest
 from small_take import FRAMES, RATE, SmallTake, words
 
 from stages import assemble_rig, bake_mesh, render_controls, render_preview, smooth_weights
-from stages.core import preview
+from stages.core import marker_panel, preview
 from stages.files import errors, film_writer, rig, series, weights
 
 NAMES = [f"lips_{index:02d}" for index in range(4)]
@@ -59,7 +59,7 @@ def test_the_preview_shows_contours_and_a_moving_character(take):
     shown = pictures(take)
     assert len(shown) == FRAMES
     np.testing.assert_allclose([time for time, _ in shown], np.arange(FRAMES) / 30, atol=1e-3)
-    width, height = preview.size(128, 96)
+    width, height = preview.size(preview.film_width(128, 96))
     assert shown[0][1].shape == (height, width, 3)
     left = [picture[: preview.HEIGHT, : width - preview.HEIGHT].astype(int) for _, picture in shown]
     assert np.abs(left[0] - 90).max() < 30
@@ -123,3 +123,51 @@ def test_curves_run_beside_the_film(take):
     right = [picture[: preview.HEIGHT, -preview.HEIGHT :].astype(int) for _, picture in shown]
     orange = [np.clip(p[:, :, 0] - p[:, :, 2], 0, None).sum(axis=0) for p in right]
     assert (np.diff([columns.argmax() for columns in orange]) > 0).all()
+
+
+def write_markers(take, seconds):
+    rng = np.random.default_rng(3)
+    count = round(120 * seconds)
+    points = np.tile(rng.normal(size=(20, 3)) * [40, 60, 30], (count, 1, 1))
+    points[:, 0, 1] += np.linspace(0, 30, count)
+    names = [f"m{index}" for index in range(20)]
+    columns = series.unstack(points, names, "xyz")
+    columns |= {f"{name}.repaired": np.zeros(count) for name in names}
+    columns["m5.repaired"] = np.where(np.arange(count) < count / 2, 2.0, 0.0)
+    columns["confidence"] = columns["markers.confidence"] = np.full(count, 0.95)
+    path = take.folder / "performance.parquet"
+    time = np.arange(count) / 120
+    series.write(path, "performance", np.arange(count), time, columns, Fraction(120))
+    return str(path)
+
+
+def marker_options(take, video):
+    line = mesh_options(take)
+    line[line.index("--video") + 1] = video
+    line[line.index("--tracked") : line.index("--tracked") + 2] = []
+    return [*line, "--performance", write_markers(take, FRAMES / 30)]
+
+
+def orange(picture):
+    red, blue = picture[: preview.HEIGHT, :, 0].astype(int), picture[: preview.HEIGHT, :, 2]
+    return (red - blue > 90).sum()
+
+
+def test_markers_alone_are_shown_at_a_rate_that_a_player_can_take(take):
+    render_preview.main(marker_options(take, ""))
+    shown = pictures(take)
+    assert len(shown) == FRAMES
+    np.testing.assert_allclose([time for time, _ in shown], np.arange(FRAMES) / 30, atol=1e-3)
+    panels = [picture[:, : marker_panel.WIDTH] for _, picture in shown]
+    assert panels[0].shape[1] + preview.HEIGHT == shown[0][1].shape[1]
+    assert orange(panels[0]) > 10 > orange(panels[-1])
+
+
+def test_a_film_that_is_not_tracked_stands_beside_its_markers(take):
+    render_preview.main(marker_options(take, f"{take.folder}/film.mp4"))
+    shown = pictures(take)
+    width = preview.film_width(128, 96)
+    assert len(shown) == FRAMES
+    assert shown[0][1].shape[1] == width + marker_panel.WIDTH + preview.HEIGHT
+    assert np.abs(shown[3][1][: preview.HEIGHT, :width].astype(int) - 90).max() < 30
+    assert orange(shown[0][1][:, width : width + marker_panel.WIDTH]) > 10

@@ -269,6 +269,17 @@ def rig_of(wildcards):
     return f"results/cast/{actor}/{wildcards.character}/rig.npz"
 
 
+def shown_tracked(wildcards):
+    """Return the tracked points of a take that the film's points drive."""
+    return tracked_of(wildcards) if points_of(wildcards) == "video" else []
+
+
+def shown_performance(wildcards):
+    """Return the performance of a take that markers drive."""
+    path = f"results/shots/{wildcards.shot}/performance.parquet"
+    return [path] if points_of(wildcards) == "markers" else []
+
+
 def takes():
     """Return what shows that a take is done."""
     return [f"results/takes/{shot}/{character}/preview.mp4" for shot, character in cast_takes()]

@@ -1,6 +1,6 @@
 """What people look at.
 
-Needs a take's mesh and its shot's film and tracked points. Makes preview.mp4, of a mesh or of the
+Needs a take's mesh and its shot's film, tracked points or markers. Makes preview.mp4, of a mesh or of the
 curves of named controls, and the run's report.
 """
 
@@ -8,7 +8,8 @@ curves of named controls, and the run's report.
 rule render_preview:
     input:
         shot_source("video"),
-        tracked="results/shots/{shot}/tracked.parquet",
+        tracked=shown_tracked,
+        performance=shown_performance,
         point_set="config/point_set.tsv",
         regions="config/regions.tsv",
         exr="results/takes/{shot}/{character}/mesh.exr",
@@ -38,6 +39,7 @@ rule render_preview:
         "python -m stages.render_preview"
         " --video {params.video:q}"
         " --tracked {input.tracked:q}"
+        " --performance {input.performance:q}"
         " --point-set {input.point_set:q}"
         " --regions {input.regions:q}"
         " --exr {input.exr:q}"
@@ -52,7 +54,8 @@ rule render_preview:
 rule render_controls:
     input:
         shot_source("video"),
-        tracked="results/shots/{shot}/tracked.parquet",
+        tracked=shown_tracked,
+        performance=shown_performance,
         point_set="config/point_set.tsv",
         regions="config/regions.tsv",
         controls="results/takes/{shot}/{character}/controls.parquet",
@@ -80,6 +83,7 @@ rule render_controls:
         "python -m stages.render_controls"
         " --video {params.video:q}"
         " --tracked {input.tracked:q}"
+        " --performance {input.performance:q}"
         " --point-set {input.point_set:q}"
         " --regions {input.regions:q}"
         " --controls {input.controls:q}"
