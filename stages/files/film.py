@@ -55,6 +55,26 @@ def promised_count(path: str | Path) -> int:
         return container.streams.video[0].frames
 
 
+def last_time(path: str | Path) -> float:
+    """Return the time of the last picture [s], from the container's packets alone.
+
+    Raises
+    ------
+    errors.InputError
+        if the film cannot be opened, holds no picture or is shorter than it promises
+    """
+    with _opened(path) as container:
+        stream = container.streams.video[0]
+        times = sorted(
+            packet.pts
+            for packet in container.demux(stream)
+            if packet.pts is not None and not packet.is_discard
+        )
+        last = float((times[-1] - times[0]) * stream.time_base) if times else 0.0
+        _check_whole(path, stream, len(times), last)
+    return last
+
+
 def read_frames(path: str | Path) -> Iterator[tuple[float, np.ndarray]]:
     """Yield time [s] and picture of every frame, and refuse a film that is not whole.
 

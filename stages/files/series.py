@@ -23,7 +23,7 @@ class Series:
     ----------
     frame : (T,) int32 array
     time_s : (T,) float64 array [s]
-    columns : name -> (T,) float64 array
+    columns : name -> (T,) float64 array, or of the type that was asked for
     rate : frames per second; the nominal rate where times vary
     meta : everything else that the file says of itself
     """
@@ -66,8 +66,14 @@ def write(
     parquet.write(path, pa.table(arrays), header)
 
 
-def read(path: str | Path, kind: str | Sequence[str]) -> Series:
+def read(path: str | Path, kind: str | Sequence[str], dtype: type = np.float64) -> Series:
     """Read a time series of one kind, or of one of several; `meta["kind"]` says which.
+
+    Parameters
+    ----------
+    path : the file
+    kind : what it may be
+    dtype : of the columns; float32, as in the file, halves the memory of long takes of markers
 
     Raises
     ------
@@ -76,7 +82,7 @@ def read(path: str | Path, kind: str | Sequence[str]) -> Series:
     """
     table, meta = parquet.read(path, kind)
     columns = {
-        name: table[name].to_numpy().astype(np.float64)
+        name: table[name].to_numpy().astype(dtype, copy=False)
         for name in table.column_names
         if name not in ("frame", "time_s")
     }
