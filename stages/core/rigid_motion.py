@@ -92,9 +92,10 @@ def remove(points: np.ndarray, rotation: np.ndarray, translation: np.ndarray) ->
 
     Returns
     -------
-    (T, P, 3) float array; NaN where the motion is unknown
+    (T, P, 3) float array of the points' precision; NaN where the motion is unknown
     """
-    return (points - translation[:, None]) @ rotation
+    kind = points.dtype
+    return (points - translation[:, None].astype(kind)) @ rotation.astype(kind)
 
 
 def squared_residuals(

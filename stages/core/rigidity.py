@@ -14,9 +14,9 @@ CORE_SHARE = 0.35
 CORE_ROUNDS = 5
 REFERENCES = 16  # core markers that judge one observation
 CHUNK = 256  # frames
-OFF = 4.0  # times the usual change of distances
+OFF = 8.0  # times the usual change of distances
 ROUNDS = 3
-POWER = 1.25
+POWER = 1.5
 FLOOR = 1e-3  # face units: no marker is known better than this
 
 
