@@ -46,9 +46,7 @@ def find(
     (T, N) float array in 0..1, how far a frame belongs to an event of the channel
     """
     kept = np.array(kinds(names, keep), object)
-    found = np.zeros(values.shape, bool)
     blinks, closing = kept == BLINK, kept == CLOSURE
-    found[:, blinks] = motion_events.excursions(values[:, blinks], rate)
     if gap is not None:
         closures = motion_events.closures(gap)
         closing = closing if closing.any() else ~blinks
@@ -57,10 +55,10 @@ def find(
         named = np.array([any(part in _plain(name) for part in SHOWS_CLOSURE) for name in names])
         shown = asked if asked.any() else named & closing
         closures = motion_events.excursions(values[:, shown], rate).any(axis=1)
-    found[:, closing] = closures[:, None]
-    moved = found.any(axis=0)
     made = np.zeros(values.shape)
-    made[:, moved] = motion_events.envelope(found[:, moved], rate)
+    blinking = motion_events.excursions(values[:, blinks], rate)
+    made[:, blinks] = motion_events.envelope(blinking, rate)
+    made[:, closing] = motion_events.envelope(closures[:, None], rate)
     return made
 
 
