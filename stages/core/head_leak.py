@@ -8,13 +8,17 @@ MIN_FRAMES = 10
 def strongest_motion(points: np.ndarray) -> np.ndarray:
     """Return the score (T,) of the first principal axis of (T, D) points: the jaw, as a rule.
 
-    Frames with an unknown point get NaN.
+    An unknown coordinate counts as its mean over the clip, so that single markers may be missing;
+    frames with fewer than half of the coordinates get NaN.
     """
-    known = np.isfinite(points).all(axis=1)
+    known = np.isfinite(points)
+    enough = 2 * known.sum(axis=1) >= points.shape[1]
     score = np.full(len(points), np.nan)
-    if known.any():
-        centred = points[known] - points[known].mean(axis=0)
-        score[known] = centred @ np.linalg.svd(centred, full_matrices=False)[2][0]
+    if enough.any():
+        counts = np.maximum(known[enough].sum(axis=0), 1)
+        mean = np.where(known[enough], points[enough], 0.0).sum(axis=0) / counts
+        centred = np.where(known[enough], points[enough] - mean, 0.0)
+        score[enough] = centred @ np.linalg.eigh(centred.T @ centred)[1][:, -1]
     return score
 
 

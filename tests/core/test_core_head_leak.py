@@ -36,7 +36,16 @@ def test_the_strongest_motion_is_the_planted_one():
     rng = np.random.default_rng(1)
     jaw, axis = rng.normal(size=50), rng.normal(size=12)
     points = 3 * jaw[:, None] * axis + 0.01 * rng.normal(size=(50, 12))
-    points[7, 3] = np.nan
+    points[7, 3:] = np.nan
     found = head_leak.strongest_motion(points)
     assert np.isnan(found[7])
     assert abs(np.corrcoef(np.delete(found, 7), np.delete(jaw, 7))[0, 1]) > 0.999
+
+
+def test_single_missing_markers_leave_no_frame_without_a_motion():
+    rng = np.random.default_rng(2)
+    jaw, axis = rng.normal(size=300), rng.normal(size=90)
+    points = 3 * jaw[:, None] * axis + 0.01 * rng.normal(size=(300, 90))
+    points[rng.random(points.shape) < 0.05] = np.nan
+    found = head_leak.strongest_motion(points)
+    assert abs(np.corrcoef(found, jaw)[0, 1]) > 0.99
