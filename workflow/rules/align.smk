@@ -22,7 +22,10 @@ rule align_head:
         code=code_of("align_head"),
         neutral_frame=session_cell("neutral_frame"),
         unit_points=session_cell("unit_points"),
+        unit_markers=session_cell("unit_markers"),
+        origin_marker=session_cell("origin_marker"),
         head=session_cell("head"),
+        head_method=session_cell("head_method"),
         seed=config["seed"],
     shell:
         "python -m stages.align_head"
@@ -30,7 +33,10 @@ rule align_head:
         " --neutral {input.neutral:q}"
         " --neutral-frame {params.neutral_frame}"
         " --unit-points {params.unit_points:q}"
+        " --unit-markers {params.unit_markers:q}"
+        " --origin-marker {params.origin_marker:q}"
         " --head {params.head:q}"
+        " --head-method {params.head_method:q}"
         " --seed {params.seed}"
         " --head-motion {output.head_motion:q}"
         " --expression {output.expression:q}"

@@ -90,7 +90,10 @@ rule propose_labels:
 
 rule merge_capture:
     input:
-        tracked="results/shots/{shot}/tracked.parquet",
+        merged_film_source,
+        tracked=tracked_of,
+        markers=markers_of,
+        sync=sync_of,
     output:
         performance="results/shots/{shot}/performance.parquet",
     log:
@@ -102,8 +105,12 @@ rule merge_capture:
     threads: 1
     params:
         code=code_of("merge_capture"),
+        video=merged_film,
     shell:
         "python -m stages.merge_capture"
         " --tracked {input.tracked:q}"
+        " --markers {input.markers:q}"
+        " --sync {input.sync:q}"
+        " --video {params.video:q}"
         " --performance {output.performance:q}"
         " 2> {log:q}"

@@ -65,6 +65,17 @@ def sync_of(wildcards):
     return [f"results/shots/{wildcards.shot}/sync.json"] if both else []
 
 
+def merged_film(wildcards):
+    """Return the film whose length a shot with markers takes."""
+    shot = row_of(SHOW["shots"], "shot", wildcards.shot)
+    return [shot["video"]] if shot["markers"] and shot["video"] else []
+
+
+def merged_film_source(wildcards):
+    """Return that film if it exists."""
+    return present(merged_film(wildcards))
+
+
 def sound_of(wildcards):
     """Return the sound in which a shot's phones are found: the marker system's, else the film's."""
     return shot_cell("sound")(wildcards) or shot_cell("video")(wildcards)
