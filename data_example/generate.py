@@ -1,4 +1,4 @@
-"""Make the example show again from its seeds: films, labels, truth, characters.
+"""Make the example show again from its seeds: films, labels, truth, characters, marker takes.
 
 Run `python -m data_example.generate` in the project's folder; `--only` makes one piece.
 """
@@ -11,6 +11,7 @@ from scipy.spatial import transform
 
 from data_example.generator import (
     actor,
+    capture,
     contours,
     film,
     labels,
@@ -24,7 +25,7 @@ from data_example.generator import (
     truth,
 )
 
-PIECES = ("films", "labels", "characters")
+PIECES = ("films", "labels", "characters", "capture")
 
 
 def _render(take, seed, hidden):
@@ -93,6 +94,8 @@ def main(argv=None):
         make_labels(arguments.folder)
     if arguments.only in (None, "characters"):
         sculpting.write_all(arguments.folder / "characters")
+    if arguments.only in (None, "capture"):
+        capture.write_all(arguments.folder)
     if arguments.only in (None, "films"):
         make_films(arguments.folder, arguments.shots)
 

@@ -51,7 +51,7 @@ def swatch(name):
     return np.array([1600.0 + 64 * list(SWATCHES).index(name), ATLAS + 64.0])
 
 
-def _parts():
+def _parts(hair):
     """Return vertices, faces, uv, colour, gloss and ambient of every part at rest."""
     body = skin.build()
     chart_uv = (body.chart * [1, -1] / (2 * skin.CHART_EXTENT) + 0.5) * ATLAS
@@ -72,7 +72,7 @@ def _parts():
     result["tongue"] = (vertices, faces, swatch("tongue"), 1.0, 0.35, 0.6)
     vertices, faces, shade = parts.ears()
     result["ears"] = (vertices, faces, swatch("ear"), 1.0, 0.12, shade)
-    vertices, faces, strand = parts.hair()
+    vertices, faces, strand = hair()
     hair_uv = [520, ATLAS + 4] + strand * [1000, 500]
     result["hair"] = (vertices, faces, hair_uv, 1.0, 0.35, 1.0)
     vertices, faces = parts.clothes()
@@ -84,14 +84,18 @@ def _parts():
     return body, result
 
 
-def build():
+def build(hair=parts.hair):
     """Build the actor at rest.
+
+    Parameters
+    ----------
+    hair : function that gives vertices (V, 3) [mm], faces (F, 3) and strands (V, 2)
 
     Returns
     -------
     actor : Actor
     """
-    body, pieces = _parts()
+    body, pieces = _parts(hair)
     slices, start, faces, columns = {}, 0, [], []
     for name, (vertices, triangles, uv, colour, gloss, ambient) in pieces.items():
         count = len(vertices)

@@ -51,7 +51,7 @@ def teeth(upper):
     return np.concatenate(vertices), faces, np.concatenate(colours)
 
 
-def _globe(rows, columns):
+def globe(rows, columns):
     """Return unit directions of a globe with its pole up, (rows, columns, 3), and faces."""
     polar = np.linspace(0.004, np.pi - 0.004, rows)[:, None]
     around = 2 * np.pi * np.arange(columns)[None] / columns
@@ -69,7 +69,7 @@ def _globe(rows, columns):
 
 def tongue():
     """Build the tongue at rest behind the lower teeth, (V, 3) [mm] and its faces."""
-    d, faces = _globe(16, 24)
+    d, faces = globe(16, 24)
     p = d * [17.0, 6.5, 26.0]
     p[..., 1] -= 1.6 * np.exp(-((p[..., 0] / 4.0) ** 2)) * (d[..., 1] > 0)
     return p.reshape(-1, 3) + np.array([0, -79.0, 47.0]), faces
@@ -85,7 +85,7 @@ def pose_tongue(rest, p):
 
 def ears():
     """Build both ears as dished ovals, (V, 3) [mm], faces and an ambient shade (V,)."""
-    d, faces = _globe(26, 26)
+    d, faces = globe(26, 26)
     rim = np.hypot(d[..., 1] / 0.92, d[..., 2] / 0.9)
     dish = 4.6 * (1 - fields.smoothstep(0.35, 0.78, rim)) * (d[..., 0] > 0)
     inner = 2.0 * np.exp(-(((rim - 0.62) / 0.09) ** 2)) * (d[..., 0] > 0)
@@ -116,7 +116,7 @@ def hair(seed=2):
     strand : (V, 2) float array, across and along the strands, 0..1
     """
     rows, columns = 100, 210
-    d, faces = _globe(rows, columns)
+    d, faces = globe(rows, columns)
     centre = np.array([0.0, -2.0, -12.0])
     flat = d.reshape(-1, 3)
     origins = np.tile(centre, (len(flat), 1))

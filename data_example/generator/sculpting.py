@@ -3,6 +3,7 @@
 import numpy as np
 
 from data_example.generator import (
+    clay_files,
     drawing,
     human_mesh,
     params,
@@ -107,4 +108,5 @@ def write_all(folder, seed=41):
         name = f"{selection.SHOT}_f{frame:04d}.csv"
         _write(folder / "puppet" / "sculpts" / region / name, _csv(made))
     rows.append(("puppet", "neutral.csv", PUPPET_ROW))
+    clay_files.write_all(folder / "clay")
     return rows
