@@ -126,7 +126,8 @@ def clip_deviation(
     """Estimate each marker's deviation from its place on the neutral.
 
     The root mean square of `R'(x_p - t) - n_p`, with the motion first from the core, then from
-    all markers weighted by the inverse squares of the deviations so found.
+    all markers weighted by the inverse squares of the deviations so found. None is taken for less
+    than half of what is usual in the core.
 
     Parameters
     ----------
@@ -146,7 +147,9 @@ def clip_deviation(
         counted = votes & np.isfinite(squares)
         number = counted.sum(axis=0)
         mean = np.where(counted, squares, 0.0).sum(axis=0) / np.maximum(number, 1)
-        variance = np.where(number > 0, np.maximum(mean, FLOOR**2), np.inf)
+        # else the two or three that happen to fit best would be fitted ever better
+        least = max(FLOOR**2, float(np.median(mean[core])) / 4)
+        variance = np.where(number > 0, np.maximum(mean, least), np.inf)
         weights = 1 / variance
     return np.sqrt(variance)
 
