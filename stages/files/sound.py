@@ -42,7 +42,7 @@ def read(path: str | Path, rate: int) -> tuple[np.ndarray, float]:
     try:
         with av.open(str(path)) as container:
             if not container.streams.audio:
-                message = "has no sound: give a film with sound, or the sound as a file of its own"
+                message = "has no sound: give one with sound, or set sync_offset_s in shots.tsv"
                 raise errors.InputError(path, message)
             samples, start = _joined(path, _decoded(container, rate), rate)
         first = _first_picture(path)
