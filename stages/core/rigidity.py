@@ -1,8 +1,9 @@
 """How rigid each marker is, from the clip alone: by the distances between markers.
 
-A distance between two markers does not change with the head. The markers that keep their
-distances from most others are the core; how far each marker strays from its place among them is
-its deviation, and a single observation that is off among the core is a mistracked one.
+A distance between two markers does not change with the head. Markers that keep their distances from
+each other, and under whose motion most of the face moves least, are the core; how far each marker
+strays from its place among them is its deviation, and a single observation that is off among the
+core is a mistracked one.
 """
 
 import numpy as np
@@ -12,6 +13,7 @@ from stages.core import rigid_motion
 SAMPLE = 600  # frames, as many as the statistics need
 CORE_SHARE = 0.35
 CORE_ROUNDS = 5
+PROPOSAL_FRAMES = 100
 REFERENCES = 16  # core markers that judge one observation
 CHUNK = 256  # frames
 OFF = 8.0  # times the usual change of distances
@@ -46,7 +48,7 @@ def fit(
     ValueError
         if no frame has enough points
     """
-    core = core_markers(changes_of_distance(_sample(points), neutral))
+    core = core_markers(_sample(points), neutral)
     votes = observations(points, neutral, core)
     deviation = clip_deviation(_sample(points), neutral, _sample(votes), core)
     weights = votes / deviation ** (2 * POWER)
@@ -73,25 +75,52 @@ def changes_of_distance(points: np.ndarray, neutral: np.ndarray) -> np.ndarray:
     return squares
 
 
-def core_markers(squares: np.ndarray) -> np.ndarray:
+def core_markers(points: np.ndarray, neutral: np.ndarray) -> np.ndarray:
     """Return the rows of the markers that are rigid to each other, the most rigid first.
 
-    Starts from the markers that keep their distances from most others and repeats the choice
-    among the chosen, so that a jaw, whose markers keep theirs among each other, is outvoted.
+    Each marker with those that keep their distances from it best is one proposal of a head. The
+    proposal under whose motion the middle one of all markers moves least wins: a jaw is as rigid
+    in itself, but under its motion most of the face moves.
+
+    Parameters
+    ----------
+    points : (T, P, 3) float array [face units]; NaN where not observed
+    neutral : (P, 3) float array [face units]
 
     Raises
     ------
     ValueError
-        if fewer than four markers are observed
+        if fewer than four markers are observed together
     """
-    score = median(squares)
-    size = max(rigid_motion.MIN_POINTS, round(CORE_SHARE * len(squares)))
-    if np.isfinite(score).sum() < rigid_motion.MIN_POINTS:
-        raise ValueError(f"fewer than {rigid_motion.MIN_POINTS} markers are observed in the clip")
+    squares = changes_of_distance(points, neutral)
+    np.fill_diagonal(squares, 0.0)
+    size = max(rigid_motion.MIN_POINTS, round(CORE_SHARE * len(neutral)))
+    best, least = None, np.inf
+    few = points[:: max(1, len(points) // PROPOSAL_FRAMES)]
+    for near in np.argsort(squares, axis=1, kind="stable"):
+        motion = _mean_residual(few, neutral, near[: max(rigid_motion.MIN_POINTS, size // 2)])
+        if (middle := np.median(motion)) < least:
+            best, least = motion, middle
+    if best is None:
+        raise ValueError(f"fewer than {rigid_motion.MIN_POINTS} markers are observed together")
     for _ in range(CORE_ROUNDS):
-        core = np.argsort(score, kind="stable")[: min(size, np.isfinite(score).sum())]
-        score = median(squares[:, core])
-    return core
+        core = np.argsort(best, kind="stable")[:size]
+        best = _mean_residual(points, neutral, core)
+    return core[np.isfinite(best[core])]
+
+
+def _mean_residual(points: np.ndarray, neutral: np.ndarray, chosen: np.ndarray) -> np.ndarray:
+    """Return how far each marker strays on average (P,) under the motion of some.
+
+    Infinite where it is never observed together with them.
+    """
+    weights = np.isin(np.arange(len(neutral)), chosen).astype(float)
+    motion = rigid_motion.fit(points, neutral, weights)
+    squares = rigid_motion.squared_residuals(points, neutral, *motion)
+    known = np.isfinite(squares)
+    number = known.sum(axis=0)
+    mean = np.sqrt(np.where(known, squares, 0.0)).sum(axis=0) / np.maximum(number, 1)
+    return np.where(number > 0, mean, np.inf)
 
 
 def observations(points: np.ndarray, neutral: np.ndarray, core: np.ndarray) -> np.ndarray:
