@@ -86,3 +86,15 @@ def test_a_picture_that_changes_size_is_refused(tmp_path):
     path.write_bytes(b"".join(parts))
     with pytest.raises(errors.InputError, match="changes the picture's size from 64x48 to 80x48"):
         list(film.read_frames(path))
+
+
+@pytest.mark.parametrize("rate", [25, Fraction(30000, 1001)])
+def test_the_last_pictures_time_is_known_without_decoding(tmp_path, rate):
+    path = write_film(tmp_path / "a.mp4", rate=rate)
+    *_, (decoded, _) = film.read_frames(path)
+    assert film.last_time(path) == pytest.approx(decoded, abs=1e-9)
+    cut = tmp_path / "cut.mp4"
+    whole = write_film(tmp_path / "b.mp4", count=90, faststart=True).read_bytes()
+    cut.write_bytes(whole[: int(len(whole) * 0.7)])
+    with pytest.raises(errors.InputError, match=r"cut\.mp4: is cut short"):
+        film.last_time(cut)
