@@ -114,3 +114,65 @@ rule merge_capture:
         " --video {params.video:q}"
         " --performance {output.performance:q}"
         " 2> {log:q}"
+
+
+rule sync_audio:
+    input:
+        shot_source("video"),
+        shot_source("sound"),
+    output:
+        sync="results/shots/{shot}/sync.json",
+    log:
+        "logs/sync_audio/{shot}.log",
+    benchmark:
+        "logs/sync_audio/{shot}.tsv"
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("sync_audio"),
+        video=shot_cell("video"),
+        sound=shot_cell("sound"),
+        offset_s=shot_cell("sync_offset_s"),
+    shell:
+        "python -m stages.sync_audio"
+        " --video {params.video:q}"
+        " --sound {params.sound:q}"
+        " --offset-s={params.offset_s:q}"
+        " --sync {output.sync:q}"
+        " 2> {log:q}"
+
+
+rule align_phones:
+    input:
+        shot_source("phones"),
+        shot_source("transcript"),
+        shot_source("words"),
+        sound_source,
+        sync=sound_sync_of,
+        visemes=data_table("visemes.tsv"),
+    output:
+        phones_out="results/shots/{shot}/phones.parquet",
+    log:
+        "logs/align_phones/{shot}.log",
+    benchmark:
+        "logs/align_phones/{shot}.tsv"
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("align_phones"),
+        phones=shot_files("phones"),
+        transcript=shot_files("transcript"),
+        words=shot_files("words"),
+        sound=sound_of,
+    shell:
+        "python -m stages.align_phones"
+        " --phones {params.phones:q}"
+        " --transcript {params.transcript:q}"
+        " --words {params.words:q}"
+        " --sound {params.sound:q}"
+        " --sync {input.sync:q}"
+        " --visemes {input.visemes:q}"
+        " --phones-out {output.phones_out:q}"
+        " 2> {log:q}"

@@ -38,6 +38,11 @@ def template(name):
     return str(Path(workflow.basedir, "stages", "templates", name).resolve())
 
 
+def data_table(name):
+    """Return the path of a shipped table, an input like any other."""
+    return str(Path(workflow.basedir, "stages", "tables", name).resolve())
+
+
 def table(name):
     """Read and validate one table of the show."""
     return show.read(f"config/{name}.tsv", SCHEMAS / f"{name}.yaml")

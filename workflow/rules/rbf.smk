@@ -39,3 +39,40 @@ rule assemble_blendshapes:
         " --face-unit {params.face_unit}"
         " --rig {output.rig:q}"
         " 2> {log:q}"
+
+
+rule solve_blendshapes:
+    input:
+        character_source("virtual_markers"),
+        character_source("channels"),
+        expression="results/shots/{shot}/expression.parquet",
+        rig=rig_of,
+    output:
+        solved="results/takes/{shot}/{character}/solved.parquet",
+    log:
+        "logs/solve_blendshapes/{shot}/{character}.log",
+    benchmark:
+        "logs/solve_blendshapes/{shot}/{character}.tsv"
+    wildcard_constraints:
+        character=of_method("blendshapes"),
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("solve_blendshapes"),
+        points=points_of,
+        virtual_markers=character_path("virtual_markers"),
+        channels=character_path("channels"),
+        solve=character_cell("solve"),
+        strength=character_cell("strength"),
+    shell:
+        "python -m stages.solve_blendshapes"
+        " --expression {input.expression:q}"
+        " --points {params.points:q}"
+        " --rig {input.rig:q}"
+        " --virtual-markers {params.virtual_markers:q}"
+        " --channels {params.channels:q}"
+        " --solve {params.solve:q}"
+        " --strength {params.strength}"
+        " --solved {output.solved:q}"
+        " 2> {log:q}"

@@ -1,0 +1,136 @@
+"""What the rules of characters and takes are given, by wildcards and tables. No rules."""
+
+
+def character_row(name):
+    """Return the row of a character."""
+    return row_of(SHOW["characters"], "character", name)
+
+
+def character_cell(column):
+    """Return a function that gives a cell of the character's row."""
+
+    def cell(wildcards):
+        return character_row(wildcards.character)[column]
+
+    return cell
+
+
+def character_path(column):
+    """Return a function that gives the path of a file in the character's folder, or a blank."""
+
+    def path(wildcards):
+        row = character_row(wildcards.character)
+        return str(Path(row["folder"], row[column])) if row[column] else ""
+
+    return path
+
+
+def character_source(column):
+    """Return a function that gives a file of the character's folder if it exists."""
+
+    def source(wildcards):
+        return present([character_path(column)(wildcards)])
+
+    return source
+
+
+def folder_of(name):
+    """Return a function that gives a folder inside the character's own."""
+
+    def folder(wildcards):
+        return str(Path(character_row(wildcards.character)["folder"], name))
+
+    return folder
+
+
+def sculpts(wildcards):
+    """Return the sculpts of a character, sorted: editing, adding or removing one is noticed."""
+    suffix = Path(character_row(wildcards.character)["neutral"]).suffix
+    return files_of(wildcards.character, f"sculpts/*/*{suffix}")
+
+
+def rig_shapes(wildcards):
+    """Return the shapes of a character's rig, sorted."""
+    suffix = Path(character_row(wildcards.character)["neutral"]).suffix
+    return files_of(wildcards.character, f"shapes/*{suffix}")
+
+
+def pair_tables(wildcards):
+    """Return the tables of a character's tuned pairs, one of each animator, sorted."""
+    tables = [files_of(wildcards.character, f"pairs/*.{kind}") for kind in ("tsv", "csv")]
+    return sorted(sum(tables, []))
+
+
+def points_of(wildcards):
+    """Return what drives a character when its actor plays: video points or markers."""
+    if "shot" in wildcards.keys():
+        actor = session_of(wildcards.shot)["actor"]
+    else:
+        actor = wildcards.actor
+    played = rows_of(SHOW["cast"], "actor", actor)
+    return next(row["points"] for row in played if row["character"] == wildcards.character)
+
+
+def pair_shots(wildcards):
+    """Return the names of the basis shots that pairs may come from."""
+    rows = shots_of(wildcards.actor, points_of(wildcards), ["yes"])
+    return [row["shot"] for row in rows]
+
+
+def pair_expressions(wildcards):
+    """Return the expressions of these shots."""
+    return expand("results/shots/{shot}/expression.parquet", shot=pair_shots(wildcards))
+
+
+def regression_of(wildcards):
+    """Return the trained regression of a take's actor and character."""
+    actor = session_of(wildcards.shot)["actor"]
+    return f"results/cast/{actor}/{wildcards.character}/rbf.npz"
+
+
+def solution_of(wildcards):
+    """Return the weights that a take's method finds, before smoothing."""
+    method = character_row(wildcards.character)["method"]
+    take = f"results/takes/{wildcards.shot}/{wildcards.character}"
+    return {
+        "key_shapes": f"results/shots/{wildcards.shot}/key_weights.parquet",
+        "rbf": f"{take}/predicted.parquet",
+        "blendshapes": f"{take}/solved.parquet",
+    }[method]
+
+
+def rig_of(wildcards):
+    """Return the rig of a take's actor and character."""
+    actor = session_of(wildcards.shot)["actor"]
+    return f"results/cast/{actor}/{wildcards.character}/rig.npz"
+
+
+def shown_tracked(wildcards):
+    """Return the tracked points of a take that the film's points drive."""
+    return tracked_of(wildcards) if points_of(wildcards) == "video" else []
+
+
+def shown_performance(wildcards):
+    """Return the performance of a take that markers drive."""
+    path = f"results/shots/{wildcards.shot}/performance.parquet"
+    return [path] if points_of(wildcards) == "markers" else []
+
+
+def takes():
+    """Return what shows that a take is done."""
+    return [f"results/takes/{shot}/{character}/preview.mp4" for shot, character in cast_takes()]
+
+
+def report_command():
+    """Return the command that writes the run's report from what exists."""
+    shots = []
+    for row in SHOW["shots"]:
+        session = session_of(row.cells["shot"])
+        shots.append(f"{session['actor']}/{session['session']}/{row.cells['shot']}")
+    basis = [row["shot"] for row in rows_of(SHOW["shots"], "basis", "yes")]
+    played = [f"{shot}/{character}" for shot, character in cast_takes()]
+    return shlex.join(
+        ["python", "-m", "stages.write_report", "--results", "results", "--logs", "logs"]
+        + ["--shots", *shots, "--basis", *basis, "--takes", *played]
+        + ["--template", template("report.html"), "--report", "results/report/index.html"]
+    )
