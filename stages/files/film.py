@@ -56,7 +56,12 @@ def promised_count(path: str | Path) -> int:
 
 
 def last_time(path: str | Path) -> float:
-    """Return the time of the last picture [s], from the container's packets alone.
+    """Return the time of the last picture [s], from the container's packets alone."""
+    return float(picture_times(path)[-1])
+
+
+def picture_times(path: str | Path) -> np.ndarray:
+    """Return the times of all pictures (T,) [s], from the container's packets alone.
 
     Raises
     ------
@@ -65,14 +70,14 @@ def last_time(path: str | Path) -> float:
     """
     with _opened(path) as container:
         stream = container.streams.video[0]
-        times = sorted(
+        ticks = sorted(
             packet.pts
             for packet in container.demux(stream)
             if packet.pts is not None and not packet.is_discard
         )
-        last = float((times[-1] - times[0]) * stream.time_base) if times else 0.0
-        _check_whole(path, stream, len(times), last)
-    return last
+        times = [float((tick - ticks[0]) * stream.time_base) for tick in ticks]
+        _check_whole(path, stream, len(times), times[-1] if times else 0.0)
+    return np.array(times)
 
 
 def read_frames(path: str | Path) -> Iterator[tuple[float, np.ndarray]]:
