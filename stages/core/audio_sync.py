@@ -15,10 +15,10 @@ SHORTEST_S = 1.0
 # full scale is 1; 16-bit dither stays below
 SILENT = 2e-4
 # what unrelated speech reaches, in standard deviations
-CHANCE = 8.0
-LEAST_CONFIDENCE = 0.375
+CHANCE = 6.0
+LEAST_CONFIDENCE = 0.4
 # a second line this strong, and this strong beside the best, is not chance
-SECOND, SECOND_SHARE = 14.0, 0.2
+SECOND, SECOND_SHARE = 10.0, 0.2
 # chunks that the line goes through; their lags are not trusted to be finer
 FITTED, FINEST_S = 240, 5e-5
 # the drift is told where the common sound is this long and the standard error no greater

@@ -14,6 +14,8 @@ APART_S = 0.25
 NEAR_S = 1e-3
 # chunks agree with a line that passes them within this
 GRID_S = 0.25e-3
+# keeps a variance of nothing above zero
+TINY = 1e-12
 # a chunk is off the line where it matches this well elsewhere, and twice as well as on the line
 SURE, OFF_GAIN = 10.0, 2.0
 OFF_FROM_S, OFF_TO_S, OFF_SHARE = 0.01, 0.25, 0.15
@@ -68,7 +70,8 @@ def best(sounds: sound_matching.Sounds) -> list[Line]:
 def _through(sounds: sound_matching.Sounds, time_s: float, lag: int) -> Line:
     """Return the line near a match that maximises the sum of all chunks' correlations.
 
-    The score is `sum_c r_c(lag + drift (t_c - t)) / sqrt(sum_c var r_c)`.
+    The score is `(sum_c r_c(lag + drift (t_c - t)) - p) / sqrt(sum_c var r_c)`, where p is what the
+    best short piece gives: two vowels can be alike, but nothing around them is.
     """
     away = (sounds.starts + sounds.length / 2) / sounds.rate - time_s
     steps = int(np.ceil(GREATEST_DRIFT * np.abs(away).max() / GRID_S))
@@ -82,9 +85,14 @@ def _through(sounds: sound_matching.Sounds, time_s: float, lag: int) -> Line:
         total += correlation[first[:, None] + np.arange(2 * near + 1)]
         variance += part
     row, column = np.unravel_index(total.argmax(), total.shape)
+    lags = lag + column - near + np.rint(drifts[row] * away * sounds.rate).astype(int)
+    pieces = [
+        sound_matching.pieces(sounds, *place)
+        for place in zip(sounds.starts.tolist(), lags.tolist(), strict=True)
+    ]
+    kept = total[row, column] - np.concatenate(pieces).max()
     offset = (lag + column - near) / sounds.rate - drifts[row] * time_s
-    score = total[row, column] / np.sqrt(variance) if variance > 0 else 0.0
-    return Line(float(offset), float(drifts[row]), float(score))
+    return Line(float(offset), float(drifts[row]), float(kept / np.sqrt(max(variance, TINY))))
 
 
 def follow(sounds: sound_matching.Sounds, line: Line) -> Lags:

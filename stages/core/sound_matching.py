@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 CHUNK_S = 4.0
+PIECE_S = 0.25
 CELL_S = 0.05
 BEST_PER_CHUNK = 8
 BLOCK = 1 << 17
@@ -119,6 +120,13 @@ def around(sounds: Sounds, start: int, lag: int, reach: int) -> tuple[np.ndarray
     first, last = np.clip([start + lag, start + lag + sounds.length], 0, len(sounds.other))
     energy = max(_energy(sounds.other[first:last]), sounds.quiet * int(last - first))
     return correlation, _energy(piece) * energy / sounds.length
+
+
+def pieces(sounds: Sounds, start: int, lag: int) -> np.ndarray:
+    """Return what short pieces of a chunk give to its correlation at a lag: it is their sum."""
+    place = _padded(sounds.other, start + lag, sounds.length)
+    product = sounds.one[start : start + sounds.length] * place
+    return np.add.reduceat(product, np.arange(0, sounds.length, round(PIECE_S * sounds.rate)))
 
 
 def centre(sounds: Sounds, start: int) -> float:
