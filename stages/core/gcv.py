@@ -61,6 +61,37 @@ def decompose(design, free=None):
     return Design(free, design, basis, *np.linalg.svd(rest, full_matrices=False))
 
 
+def decompose_kernel(kernel, free=None):
+    """Decompose the design of a kernel, whose products of rows are the kernel's entries.
+
+    With ``w`` of `solve`, ``dual(parts, w)`` are the weights of the kernel's columns.
+
+    Parameters
+    ----------
+    kernel : (N, N) float array
+        Symmetric, no eigenvalue below zero.
+    free : (N, Q) float array, optional
+
+    Returns
+    -------
+    Design
+    """
+    kernel = np.asarray(kernel, float)
+    free = np.zeros((len(kernel), 0)) if free is None else np.asarray(free, float)
+    basis = np.linalg.qr(free)[0]
+    rest = kernel - basis @ (basis.T @ kernel)
+    rest = rest - (rest @ basis) @ basis.T
+    energy, left = np.linalg.eigh(0.5 * (rest + rest.T))
+    kept = energy > energy.max(initial=0.0) * len(kernel) * np.finfo(float).eps
+    left, singular = left[:, kept], np.sqrt(energy[kept])
+    return Design(free, left * singular, basis, left, singular, np.eye(len(singular)))
+
+
+def dual(parts, weights):
+    """Return the weights (N, K) of a kernel's columns that equal weights (M, K) of its design."""
+    return parts.left @ (weights / parts.singular[:, None])
+
+
 def choose(parts, targets):
     """Find for each target the lambda that minimises ``N |P y|^2 / (tr P)^2``.
 
@@ -90,15 +121,17 @@ def choose(parts, targets):
     # the last of equals: what cannot be told apart is smoothed most
     start = len(grid) - 1 - scores[::-1].argmin(axis=0)
     best, lowest = grid[start], scores.min(axis=0)
-    current, before = best, lowest
+    current, open_ = best, np.arange(len(best))
     for _ in range(ITERATIONS):
-        current = np.clip(_estimate(parts, rotated, outside, current), grid[0], grid[-1])
-        score = _score(parts, rotated, outside, current)
-        best = np.where(score < lowest, current, best)
-        lowest = np.minimum(score, lowest)
-        if np.all(np.abs(score - before) <= TOLERANCE * before):
+        part = rotated[:, open_], outside[open_]
+        current = np.clip(_estimate(parts, *part, current), grid[0], grid[-1])
+        reached, before = _score(parts, *part, current), lowest[open_]
+        better = reached < before
+        best[open_[better]], lowest[open_[better]] = current[better], reached[better]
+        moving = np.abs(reached - before) > TOLERANCE * before
+        open_, current = open_[moving], current[moving]
+        if len(open_) == 0:
             break
-        before = score
     return best
 
 
