@@ -15,6 +15,18 @@ THOUSANDTHS = 1000  # other rates are rounded to these
 UNITS = ((0.5, 1.0), (500.0, 1e-3), (np.inf, 1e-6))
 
 
+def check_span(rows: int, frames: int) -> None:
+    """Refuse rows that stand for so many frames that most would be invented.
+
+    Raises
+    ------
+    ValueError
+        stating both
+    """
+    if frames > 2 * rows + 1000:
+        raise ValueError(f"{rows} rows stand for {frames} frames")
+
+
 def seconds(times: np.ndarray) -> np.ndarray:
     """Return times in seconds that may be in milliseconds or microseconds, told by their steps.
 
@@ -58,10 +70,8 @@ def rate_of(time_s: np.ndarray, frame: np.ndarray | None = None) -> Fraction:
     if not (steps > 0).all():
         row = int(np.flatnonzero(~(steps > 0))[0]) + 1
         raise ValueError(f"time {time_s[row]:.6g} s follows {time_s[row - 1]:.6g} s")
-    if frame is None:
-        counts = np.maximum(np.rint(steps / np.median(steps)), 1)
-    else:
-        counts = np.diff(frame)
+    guess = np.maximum(np.rint(steps / np.median(steps)), 1)
+    counts = guess if frame is None else np.diff(frame)
     whole = steps < 1.5 * np.median(steps / counts) * counts
     rate = float(counts[whole].sum() / steps[whole].sum())
     if not PLAUSIBLE[0] <= rate <= PLAUSIBLE[1]:

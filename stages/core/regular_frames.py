@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from stages.core import clock, cubic_resample
+from stages.core import clock, cubic_resample, frame_clock
 
 SLACK = 0.25  # of a frame: measurements this near to their frames are taken as they are
 
@@ -32,12 +32,14 @@ def regular(
     Raises
     ------
     ValueError
-        if no row is without NaN
+        if no row is without NaN, or the rows stand for too many frames
     """
     known = np.isfinite(values).all(axis=1)
     if not known.any():
         raise ValueError("holds no frame without blanks")
     elapsed = time_s - time_s[0]
+    count = clock.frame_count(elapsed[-1], rate)
+    frame_clock.check_span(len(time_s), count)
     steps = np.diff(elapsed)
     counts = np.maximum(np.rint(steps / np.median(steps)), 1) if len(steps) else steps
     row = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
@@ -45,7 +47,7 @@ def regular(
     measured = np.zeros(len(dense), bool)
     measured[row[known]] = True
     filled = np.stack([np.interp(dense, row[known], v) for v in values[known].T], axis=1)
-    wanted = clock.frame_times(clock.frame_count(elapsed[-1], rate), rate)
+    wanted = clock.frame_times(count, rate)
     place = np.interp(wanted, np.interp(dense, row, elapsed), dense)
     if (np.abs(place - np.rint(place)) <= SLACK).all():
         place = np.rint(place)

@@ -1,0 +1,109 @@
+"""Landmarks in long text tables: a row for each point of each frame.
+
+Columns `frame` or a time, `index` (or `landmark`, `point`, `id`), `x`, `y`.
+"""
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from stages.core import frame_clock
+from stages.files import errors, headed_text, landmark_take, marker_rows
+
+INDEX = ("index", "landmark", "landmark_index", "landmark_id", "landmarkindex", "point", "id")
+
+
+def is_long(header: Sequence[str]) -> bool:
+    """Say whether a header is that of a long table of landmarks."""
+    return all(headed_text.column(header, names) is not None for names in (INDEX, ("x",), ("y",)))
+
+
+def read(path: str | Path, table: headed_text.Table) -> landmark_take.LandmarkTake:
+    """Read a take.
+
+    Raises
+    ------
+    errors.InputError
+        naming the line
+    """
+    header = table.header
+    time, unit_s = headed_text.time_column(header)
+    columns = [
+        headed_text.column(header, headed_text.FRAME),
+        time,
+        *(headed_text.column(header, names) for names in (INDEX, ("x",), ("y",))),
+    ]
+    if columns[0] is None and time is None:
+        raise errors.InputError(path, "has no column of frames or times: add one named frame")
+    keys, faces, lines = [], [], []
+    for number, cells in table.lines:
+        if not any(cells):
+            continue
+        frame, time_s, index, x, y = _numbers(path, number, cells, table, columns)
+        if not keys or keys[-1] != (frame, time_s):
+            keys.append((frame, time_s))
+            faces.append({})
+            lines.append(f"line {number}")
+        if index in faces[-1]:
+            message = f"line {number}: point {index:g} stands twice in its frame: keep one face"
+            raise errors.InputError(path, message)
+        faces[-1][index] = (x, y)
+    if not keys:
+        raise errors.InputError(path, "holds no row of numbers: is it cut short? export it again")
+    points = _stacked(path, faces, lines)
+    frames, times = (np.array(part) for part in zip(*keys, strict=True))
+    number = None
+    if columns[0] is not None:
+        number = np.rint(frames).astype(np.int64)
+        landmark_take.check_frames(path, number, lines)
+    elif (np.diff(times) <= 0).any():
+        raise errors.InputError(path, "its times do not rise: sort the rows")
+    if time is None or (np.diff(times) <= 0).any():
+        times = None
+    else:
+        times = times * unit_s if unit_s else frame_clock.seconds(times)
+    seen = np.isfinite(points).all(axis=2).any(axis=1).astype(float)
+    tracker = landmark_take.tracker_of(path, points.shape[1])
+    return landmark_take.LandmarkTake({tracker: points}, [], seen, frame=number, time_s=times)
+
+
+def _numbers(
+    path: str | Path,
+    line: int,
+    cells: Sequence[str],
+    table: headed_text.Table,
+    columns: Sequence[int | None],
+) -> list[float]:
+    """Return frame, time, index, x and y of a row; 0 for a column that there is not."""
+    if len(cells) < len(table.header):
+        message = f"line {line} has {len(cells)} cells, the header has {len(table.header)}"
+        raise errors.InputError(path, message + ": is it cut short? export it again")
+    numbers = []
+    for place, column in enumerate(columns):
+        text = "0" if column is None else cells[column].replace(table.decimal, ".")
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan if place > 2 and text.lower() in marker_rows.GAPS else math.inf
+        if math.isinf(value) or (math.isnan(value) and place <= 2):
+            message = f"line {line}, column {table.header[column]}: '{text}' is no number"
+            raise errors.InputError(path, message + ": export it again")
+        numbers.append(value)
+    return numbers
+
+
+def _stacked(
+    path: str | Path, faces: Sequence[dict[float, tuple[float, float]]], lines: Sequence[str]
+) -> np.ndarray:
+    """Return the points (T, P, 2) of all frames, NaN where a frame has none."""
+    count = max(len(face) for face in faces)
+    points = np.full((len(faces), count, 2), np.nan)
+    for row, face in enumerate(faces):
+        if len(face) not in (1, count) or (len(face) == count and set(face) != set(range(count))):
+            message = f"{lines[row]}: its frame has {len(face)} points of {count}"
+            raise errors.InputError(path, message + ": is it cut short? export all points")
+        if len(face) == count:
+            points[row] = [face[index] for index in range(count)]
+    return points
