@@ -26,6 +26,7 @@ rule all:
     input:
         label_proposals(),
         briefs(),
+        reference_pages(),
         takes(),
 
 

@@ -3,10 +3,12 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+import cv2
 import numpy as np
 
 from stages.files import film, series
 
+WIDTH = 300  # of small pictures [px]
 HALF_SIDE = 0.85  # of the larger extent of the tracked points: the whole face
 
 
@@ -39,6 +41,41 @@ def cut_out(
         frame: _square(images[int(tracked.frame[row])], points[row])
         for frame, row in zip(frames, rows, strict=True)
     }
+
+
+def at_times(video: str | Path, times_s: Sequence[float]) -> list[np.ndarray]:
+    """Return the whole pictures of a film that are nearest to some times, small.
+
+    Parameters
+    ----------
+    video : the film
+    times_s : times from the first picture [s]
+
+    Returns
+    -------
+    a (H, W, 3) uint8 RGB array for each time
+
+    Raises
+    ------
+    errors.InputError
+        if the film cannot be read
+    """
+    shown_s = film.picture_times(video)
+    wanted = [int(np.abs(shown_s - time_s).argmin()) for time_s in times_s]
+    kept = {}
+    for number, (_, picture) in enumerate(film.read_frames(video)):
+        if number in wanted:
+            kept[number] = _small(picture)
+    return [kept[number] for number in wanted]
+
+
+def _small(image: np.ndarray) -> np.ndarray:
+    """Shrink a picture to a width that a page needs."""
+    height, width = image.shape[:2]
+    if width <= WIDTH:
+        return image
+    size = WIDTH, round(height * WIDTH / width)
+    return cv2.resize(image, size, interpolation=cv2.INTER_AREA)
 
 
 def _square(image: np.ndarray, points: np.ndarray) -> np.ndarray:

@@ -176,3 +176,38 @@ rule align_phones:
         " --visemes {input.visemes:q}"
         " --phones-out {output.phones_out:q}"
         " 2> {log:q}"
+
+
+rule import_markers:
+    input:
+        shot_source("markers"),
+        session_source("marker_map"),
+    output:
+        markers="results/shots/{shot}/markers.parquet",
+        faults="results/shots/{shot}/marker_faults.tsv",
+    log:
+        "logs/import_markers/{shot}.log",
+    benchmark:
+        "logs/import_markers/{shot}.tsv"
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("import_markers"),
+        marker_file=shot_cell("markers"),
+        marker_map=session_cell("marker_map"),
+        unit=session_cell("marker_unit"),
+        axes=session_cell("marker_axes"),
+        rate=session_cell("marker_rate"),
+        max_gap_s=config["max_marker_gap_s"],
+    shell:
+        "python -m stages.import_markers"
+        " --marker-file {params.marker_file:q}"
+        " --marker-map {params.marker_map:q}"
+        " --unit {params.unit:q}"
+        " --axes={params.axes:q}"
+        " --rate {params.rate:q}"
+        " --max-gap-s {params.max_gap_s}"
+        " --markers {output.markers:q}"
+        " --faults {output.faults:q}"
+        " 2> {log:q}"

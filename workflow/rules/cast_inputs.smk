@@ -82,6 +82,56 @@ def pair_expressions(wildcards):
     return expand("results/shots/{shot}/expression.parquet", shot=pair_shots(wildcards))
 
 
+def pair_cells(column):
+    """Return a function that gives a column of these shots."""
+
+    def values(wildcards):
+        rows = shots_of(wildcards.actor, points_of(wildcards), ["yes"])
+        return [row[column] for row in rows]
+
+    return values
+
+
+def pair_films(wildcards):
+    """Return the films of these shots that exist."""
+    return present(pair_cells("video")(wildcards))
+
+
+def pair_phone_shots(wildcards):
+    """Return the names of these shots whose phones are given or can be found."""
+    rows = shots_of(wildcards.actor, points_of(wildcards), ["yes"])
+    return [row["shot"] for row in rows if row["phones"] or row["transcript"]]
+
+
+def pair_phones(wildcards):
+    """Return these phones."""
+    return expand("results/shots/{shot}/phones.parquet", shot=pair_phone_shots(wildcards))
+
+
+def pair_starts(wildcards):
+    """Return what the equation solve makes of these shots, where virtual markers are known."""
+    known = character_row(wildcards.character)["virtual_markers"]
+    take = "results/takes/{shot}/{character}/solved.parquet"
+    shots = pair_shots(wildcards) if known else []
+    return expand(take, shot=shots, character=wildcards.character)
+
+
+def other_pair_shots(wildcards):
+    """Return the shots that pairs in the character's folder may name for other actors or points."""
+    own = cells(
+        [row for row in SHOW["shots"] if row.cells["session"] in sessions_of(wildcards.actor)],
+        "shot",
+    )
+    others = [name for name in cells(SHOW["shots"], "shot") if name not in own]
+    kinds = [
+        row["shot"]
+        for points in ("video", "markers")
+        for row in shots_of(wildcards.actor, points, ["yes"])
+    ]
+    used = pair_shots(wildcards)
+    return others + [name for name in dict.fromkeys(kinds) if name not in used]
+
+
 def regression_of(wildcards):
     """Return the trained regression of a take's actor and character."""
     actor = session_of(wildcards.shot)["actor"]

@@ -129,6 +129,12 @@ def of_method(*methods):
     return "|".join(row["character"] for row in rows if row["method"] in methods) or "-"
 
 
+def solvable():
+    """Return the pattern of the characters whose virtual markers are known."""
+    rows = [row.cells for row in SHOW["characters"]]
+    return "|".join(row["character"] for row in rows if row["virtual_markers"]) or "-"
+
+
 def of_kind(kind):
     """Return the pattern of the characters that are a mesh, or a table of controls."""
     rows = [row.cells for row in SHOW["characters"]]

@@ -152,6 +152,16 @@ def briefs():
     return expand("results/actors/{actor}/brief/index.html", actor=actors)
 
 
+def reference_pages():
+    """Return the page of reference frames of everyone who is driven by tuned pairs."""
+    played = [row.cells for row in SHOW["cast"]]
+    return [
+        f"results/cast/{row['actor']}/{row['character']}/references/index.html"
+        for row in played
+        if character_row(row["character"])["method"] == "rbf"
+    ]
+
+
 def basis_shots(wildcards):
     """Return the names of an actor's basis shots."""
     return [row["shot"] for row in shots_of(wildcards.actor, "video", ["yes"])]

@@ -54,7 +54,7 @@ rule solve_blendshapes:
     benchmark:
         "logs/solve_blendshapes/{shot}/{character}.tsv"
     wildcard_constraints:
-        character=of_method("blendshapes"),
+        character=solvable(),
     conda:
         "../envs/stages.yaml"
     threads: 1
@@ -75,4 +75,177 @@ rule solve_blendshapes:
         " --solve {params.solve:q}"
         " --strength {params.strength}"
         " --solved {output.solved:q}"
+        " 2> {log:q}"
+
+
+rule train_rbf:
+    input:
+        character_source("channels"),
+        pairs=pair_tables,
+        expressions=pair_expressions,
+        rig="results/cast/{actor}/{character}/rig.npz",
+    output:
+        rbf="results/cast/{actor}/{character}/rbf.npz",
+        residuals="results/cast/{actor}/{character}/pair_residuals.parquet",
+    log:
+        "logs/train_rbf/{actor}/{character}.log",
+    benchmark:
+        "logs/train_rbf/{actor}/{character}.tsv"
+    wildcard_constraints:
+        character=of_method("rbf"),
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("train_rbf"),
+        shots=pair_shots,
+        points=points_of,
+        channels=character_path("channels"),
+        regression=character_cell("regression"),
+        dimensions=character_cell("dimensions"),
+        widths=character_cell("widths"),
+        min_confidence=config["min_confidence"],
+        other_shots=other_pair_shots,
+    shell:
+        "python -m stages.train_rbf"
+        " --pairs {input.pairs:q}"
+        " --shots {params.shots:q}"
+        " --expressions {input.expressions:q}"
+        " --points {params.points:q}"
+        " --rig {input.rig:q}"
+        " --channels {params.channels:q}"
+        " --regression {params.regression:q}"
+        " --dimensions {params.dimensions:q}"
+        " --widths {params.widths:q}"
+        " --other-shots {params.other_shots:q}"
+        " --min-confidence {params.min_confidence}"
+        " --rbf {output.rbf:q}"
+        " --residuals {output.residuals:q}"
+        " 2> {log:q}"
+
+
+rule predict_weights:
+    input:
+        character_source("channels"),
+        rbf=regression_of,
+        expression="results/shots/{shot}/expression.parquet",
+        rig=rig_of,
+    output:
+        predicted="results/takes/{shot}/{character}/predicted.parquet",
+    log:
+        "logs/predict_weights/{shot}/{character}.log",
+    benchmark:
+        "logs/predict_weights/{shot}/{character}.tsv"
+    wildcard_constraints:
+        character=of_method("rbf"),
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("predict_weights"),
+        points=points_of,
+        channels=character_path("channels"),
+    shell:
+        "python -m stages.predict_weights"
+        " --rbf {input.rbf:q}"
+        " --expression {input.expression:q}"
+        " --points {params.points:q}"
+        " --rig {input.rig:q}"
+        " --channels {params.channels:q}"
+        " --predicted {output.predicted:q}"
+        " 2> {log:q}"
+
+
+rule select_references:
+    input:
+        character_source("channels"),
+        expressions=pair_expressions,
+        phones=pair_phones,
+        pairs=pair_tables,
+        rig="results/cast/{actor}/{character}/rig.npz",
+    output:
+        references="results/cast/{actor}/{character}/references.parquet",
+    log:
+        "logs/select_references/{actor}/{character}.log",
+    benchmark:
+        "logs/select_references/{actor}/{character}.tsv"
+    wildcard_constraints:
+        character=of_method("rbf"),
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("select_references"),
+        shots=pair_shots,
+        emotions=pair_cells("expression"),
+        phone_shots=pair_phone_shots,
+        points=points_of,
+        other_shots=other_pair_shots,
+        channels=character_path("channels"),
+        wanted=character_cell("references"),
+        min_confidence=config["min_confidence"],
+    shell:
+        "python -m stages.select_references"
+        " --shots {params.shots:q}"
+        " --expressions {input.expressions:q}"
+        " --emotions {params.emotions:q}"
+        " --phone-shots {params.phone_shots:q}"
+        " --phones {input.phones:q}"
+        " --points {params.points:q}"
+        " --pairs {input.pairs:q}"
+        " --other-shots {params.other_shots:q}"
+        " --rig {input.rig:q}"
+        " --channels {params.channels:q}"
+        " --wanted {params.wanted}"
+        " --min-confidence {params.min_confidence}"
+        " --references {output.references:q}"
+        " 2> {log:q}"
+
+
+rule write_references:
+    input:
+        pair_films,
+        references="results/cast/{actor}/{character}/references.parquet",
+        expressions=pair_expressions,
+        starts=pair_starts,
+        rig="results/cast/{actor}/{character}/rig.npz",
+        template=template("references.html"),
+    output:
+        page=report(
+            "results/cast/{actor}/{character}/references/index.html",
+            caption="../report/references.rst",
+            category="References",
+            labels={"actor": "{actor}", "character": "{character}"},
+        ),
+        table="results/cast/{actor}/{character}/references/pairs.tsv",
+    log:
+        "logs/write_references/{actor}/{character}.log",
+    benchmark:
+        "logs/write_references/{actor}/{character}.tsv"
+    wildcard_constraints:
+        character=of_method("rbf"),
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("write_references"),
+        shots=pair_shots,
+        videos=pair_cells("video"),
+        points=points_of,
+        pair_folder=folder_of("pairs"),
+    shell:
+        "python -m stages.write_references"
+        " --actor {wildcards.actor:q}"
+        " --character {wildcards.character:q}"
+        " --references {input.references:q}"
+        " --shots {params.shots:q}"
+        " --expressions {input.expressions:q}"
+        " --videos {params.videos:q}"
+        " --points {params.points:q}"
+        " --starts {input.starts:q}"
+        " --rig {input.rig:q}"
+        " --pair-folder {params.pair_folder:q}"
+        " --template {input.template:q}"
+        " --page {output.page:q}"
+        " --table {output.table:q}"
         " 2> {log:q}"
