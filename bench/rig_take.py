@@ -37,11 +37,16 @@ def track(folder):
     return names, np.array([row[2:last] for row in rows], float)
 
 
+def whole_actor(folder, names):
+    """Return the actor's rig at all its vertices."""
+    file = _actor_file(folder)
+    return _rig(file["neutral"], file["deltas"], list(file["names"]), names)
+
+
 def actor(folder, names):
     """Return the actor's rig at its markers: the 68 landmarks and points spread over the face."""
-    file = np.load(Path(folder) / "ict-facekit" / "ict_face_rig.npz")
-    rig = _rig(file["neutral"], file["deltas"], list(file["names"]), names)
-    markers = list(file["landmark68"])
+    rig = whole_actor(folder, names)
+    markers = list(_actor_file(folder)["landmark68"])
     distance = _distance(rig.neutral, markers[0])
     for marker in markers:
         distance = np.minimum(distance, _distance(rig.neutral, marker))
@@ -79,6 +84,11 @@ def opening_of(rig, names):
         most = np.linalg.norm(both, axis=1).argsort(kind="stable")[-20:]
         heights.append(rig.deltas[:, most, 1].mean(axis=1))
     return heights[0] - heights[1]
+
+
+def _actor_file(folder):
+    """Return the arrays of the actor's rig."""
+    return np.load(Path(folder) / "ict-facekit" / "ict_face_rig.npz")
 
 
 def _rig(neutral, deltas, have, names):

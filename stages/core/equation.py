@@ -11,13 +11,16 @@ import numpy as np
 
 from stages.core import clip_least_squares
 
-# what a shape of usual length, alone, gives up of its weight; wide: more shapes than coordinates
-RIDGE, WIDE_RIDGE = 1e-6, 1e-2
+# what a shape of usual length, alone, gives up of its weight: next to nothing, but a hundredth
+# where there are more shapes than half of the coordinates, which noise could set at will
+RIDGE, WIDE_RIDGE, WIDE = 1e-6, 1e-2, 0.5
 # frames with a smaller share of their points are not solved
 ENOUGH = 0.5
 # at this rate strength 1 counts a second difference of a weight like the same change of its shape
 STRENGTH_RATE = 60.0
 FRAME_TOLERANCE = 1e-6
+# of the strength, for blinks: their peaks stay
+BLINK_STRENGTH = 0.02
 METHODS = ("positions", "displacements", "bounded", "clip")
 
 
@@ -100,7 +103,7 @@ def solve(points, neutral, places, deltas, method, lower=0.0, upper=1.0, strengt
     """Solve the weights of every frame by one of `METHODS`.
 
     With a ridge of ``1e-6 |B|^2``, ``|B|^2`` being the mean square length of the shapes, or of
-    ``1e-2 |B|^2`` where there are more shapes than coordinates, which leaves one answer.
+    ``1e-2 |B|^2`` where there are more shapes than half of the coordinates: one answer is left.
 
     - `positions`, `displacements`: ``|B w_t - x_t|^2`` (least squares);
     - `bounded`: the same subject to ``lower <= w_t <= upper``;
@@ -147,7 +150,7 @@ def solve(points, neutral, places, deltas, method, lower=0.0, upper=1.0, strengt
     )
     matrix = deltas.reshape(len(deltas), -1).T
     usual = _usual(matrix)
-    ridge = usual * (WIDE_RIDGE if len(deltas) > len(matrix) else RIDGE)
+    ridge = usual * (WIDE_RIDGE if len(deltas) > WIDE * len(matrix) else RIDGE)
     seen = np.isfinite(points).all(axis=2)
     enough = seen.mean(axis=1) >= ENOUGH
     wanted = targets(points, neutral, places, method)
