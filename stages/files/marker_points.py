@@ -85,7 +85,7 @@ def read(
 
 def _neutral(path: str | Path, frame: int) -> dict[str, np.ndarray]:
     """Return the places of the markers that are seen on the neutral [mm]."""
-    source = series.read(path, "performance")
+    source = series.read(path, "performance", np.float32)
     names = series.point_names(source, AXES)
     if not names:
         message = "the neutral's shot holds no markers: choose a neutral_shot with markers"
@@ -93,7 +93,14 @@ def _neutral(path: str | Path, frame: int) -> dict[str, np.ndarray]:
     if frame >= len(source.frame):
         message = f"neutral frame {frame} is beyond the last frame {len(source.frame) - 1}"
         raise errors.InputError(path, message + ": correct neutral_frame in sessions.tsv")
-    places = series.stack(source, path, names, AXES)[frame]
-    repaired = series.stack(source, path, names, ["repaired"])[frame, :, 0]
+    here = series.Series(
+        source.frame[[frame]],
+        source.time_s[[frame]],
+        {name: values[[frame]] for name, values in source.columns.items()},
+        source.rate,
+        source.meta,
+    )
+    places = series.stack(here, path, names, AXES)[0].astype(np.float64)
+    repaired = series.stack(here, path, names, ["repaired"])[0, :, 0]
     seen = np.isfinite(places).all(axis=1) & (repaired != MISTRACKED)
     return {name: place for name, place, good in zip(names, places, seen, strict=True) if good}
