@@ -17,6 +17,7 @@ from data_example.generator import (
     params,
     render,
     shots,
+    skin,
     sound,
     sound_file,
     spoken,
@@ -30,7 +31,7 @@ STEP_MM = 0.05
 SEAT = np.array([35.0, -140.0, 1180.0])
 PICTURE = 400
 DOT_MM = 1.6
-CRF = "27"
+CRF, SOUND_BITS = "27", 40000
 # how far a marker may stand behind what is seen there and still be seen [mm]
 BEHIND_MM = 3.0
 
@@ -165,10 +166,12 @@ def write_all(folder, names=tuple(marker_takes.TAKES)):
     here = folder / "capture"
     here.mkdir(parents=True, exist_ok=True)
     (folder / "truth").mkdir(exist_ok=True)
-    body = mia.build().skin
+    body = skin.build()
     glued = markers.glue(body)
-    for seed, name in enumerate(names):
-        take = marker_takes.TAKES[name]()
+    for seed, (name, direct) in enumerate(marker_takes.TAKES.items()):
+        if name not in names:
+            continue
+        take = direct()
         write_markers(here / f"{name}.c3d", take, body, glued, 60 + seed)
         truth.save(folder / "truth" / f"{name}.npz", marker_truth.of_take(name, body, glued))
         if take.duration_s:

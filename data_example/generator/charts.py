@@ -75,7 +75,7 @@ def within(points, outline, margin):
     return inside | (spatial.cKDTree(outline).query(points)[0] < margin)
 
 
-def lattice(outlines, steps, extent, margin, seed):
+def lattice(outlines, steps, extent, margin, seed, even=False):
     """Return places spread over the chart outside the outlines, (N, 2) [mm].
 
     Parameters
@@ -85,12 +85,14 @@ def lattice(outlines, steps, extent, margin, seed):
     extent : float, radius that is covered [mm]
     margin : float, distance kept from the outlines [mm]
     seed : int, turns the circles at random; None makes them alike on both sides
+    even : bool, gives every circle an even number, so that it meets the middle line twice
     """
     rng = np.random.default_rng(seed)
     layers, radius = [], 0.0
     while radius < extent:
         step = steps[0] + (steps[1] - steps[0]) * fields.smoothstep(70, 150, radius)
         count = max(int(2 * np.pi * radius / step), 1)
+        count += even and radius > 0 and count % 2
         start = count / 4 if seed is None else rng.random()
         angle = 2 * np.pi * (np.arange(count) + start) / count
         layers.append(radius * np.stack([np.cos(angle), np.sin(angle)], axis=1))

@@ -10,6 +10,8 @@ from data_example.generator import charts, features, fields, params, solids
 CENTRE = np.array([0.0, -8.0, 0.0])
 HINGE = np.array([0.0, -16.0, 6.0])
 RINGS, LIDS = 24, 16
+# number of the ring that is the lips' inner edge
+INNER = 2
 SPOKES = 9
 MOUTH = np.array([0.0, -60.0, 84.0])
 MOUTH_HALF = 38.0
@@ -51,13 +53,14 @@ def jaw(points, open_, side):
 
 
 def lips(p, roll_upper=0.0, roll_lower=0.0):
-    """Return the mouth's rings from the throat to the lips' outer border, (6, RINGS, 3) [mm]."""
+    """Return the mouth's rings from the throat to the lips' outer border, (5, RINGS, 3) [mm]."""
     upper, lower = features.lips(p, ALONG, GAINS)
     flat = np.where(LOWER[:, None], lower, upper) * MOUTH_HALF
-    flat[:, 1] += 5.0 * ALONG**2
+    flat[:, 1] += 3.0 * ALONG**2
     push = 13.0 * features.forward(p) * (1 - 0.6 * ALONG**2)
     depth = MOUTH[2] - MOUTH_CURVE * flat[:, 0] ** 2 + push
-    hang = np.where(LOWER, -flat[:, 1] / MOUTH_HALF, 0)
+    # the lower lip goes back as it drops, and lies against the upper one when they meet
+    hang = np.where(LOWER, upper[:, 1] - lower[:, 1], 0)
     inner = np.column_stack([flat + MOUTH[:2], depth - 9.0 * np.maximum(hang, 0)])
     sign = np.where(LOWER, -1.0, 1.0)
     end = np.maximum(1 - ALONG**4, 0) ** 0.6
@@ -67,10 +70,9 @@ def lips(p, roll_upper=0.0, roll_lower=0.0):
     middle = inner + 0.5 * (outer - inner)
     middle[:, 2] += np.where(LOWER, 5.0, 4.0) * end * (1 - 0.7 * p["press"] - 0.9 * rolled)
     zero = 0 * end
-    behind = inner + np.column_stack([zero, sign * 2.0 * end, zero - 8])
-    bag = inner + np.column_stack([zero, sign * 12 * end, zero - 24])
-    throat = bag.mean(axis=0) + 0.02 * (bag - bag.mean(axis=0)) - [0, 0, 26]
-    return np.stack([throat, bag, behind, inner, middle, outer])
+    behind = inner + np.column_stack([zero, sign * 5.0 * end, zero - 11])
+    throat = inner.mean(axis=0) + 0.02 * (inner - inner.mean(axis=0)) - [0, 0, 52]
+    return np.stack([throat, behind, inner, middle, outer])
 
 
 def lids(side, p):
@@ -150,7 +152,7 @@ def skin_field(points, p):
         move += p["squint"] * bag[:, None] * [0, 4.5, 2.5]
         brow = features.brow(p, name, np.clip((62 - side * points[:, 0]) / 46, 0, 1))
         near = fields.bell(points, (side * 36, 46, 62), (32, 17, 60))
-        move[:, :2] += near[:, None] * 40 * brow
+        move[:, :2] += near[:, None] * 52 * brow
     return move
 
 
@@ -193,7 +195,7 @@ class Rest:
         turn = 2 * np.pi * np.arange(12) / 12
         rim = np.stack([40 * np.sin(turn), 0 * turn - 141.5, 40 * np.cos(turn) - 16], axis=1)
         neck = charts.to_chart(rim, CENTRE)
-        spread = charts.lattice(outlines, (14.0, 58.0), 2.55 * charts.MM, 8.0, None)
+        spread = charts.lattice(outlines, (14.0, 58.0), 2.55 * charts.MM, 8.0, None, even=True)
         spread = spread[~charts.within(spread, neck, 14.0)]
         middle = charts.to_chart(np.array([[0.0, -142.0, -16.0]]), CENTRE)
         return np.concatenate([spread, neck, middle])

@@ -44,8 +44,9 @@ def ply(rig, vertices, coloured):
     rows["place"] = vertices
     if coloured:
         rows["tone"] = np.round(rig.colours * 255)
-    faces = [bytes([len(face)]) + np.array(face, "<u2").tobytes() for face in rig.faces]
-    return ("\n".join([*head, "end_header"]) + "\n").encode() + rows.tobytes() + b"".join(faces)
+    faces = np.zeros(len(rig.faces), np.dtype([("count", "u1"), ("corners", "<u2", (3,))]))
+    faces["count"], faces["corners"] = 3, rig.faces
+    return ("\n".join([*head, "end_header"]) + "\n").encode() + rows.tobytes() + faces.tobytes()
 
 
 def virtual_markers(rig):
@@ -74,8 +75,8 @@ def _outer_skin(rig):
     """Return the vertices of skin that a marker could be glued to, in front and outside, (N,)."""
     hidden = np.zeros(rig.skin, bool)
     # the mouth's rings before the lips' inner edge, the lids' before the edge
-    hidden[: 3 * clay.RINGS] = True
-    start = 8 * clay.RINGS
+    hidden[: clay.INNER * clay.RINGS] = True
+    start = (clay.INNER + 5) * clay.RINGS
     for _ in range(2):
         hidden[start : start + clay.LIDS] = True
         start += 6 * clay.LIDS

