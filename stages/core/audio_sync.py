@@ -18,7 +18,7 @@ SILENT = 2e-4
 CHANCE = 6.0
 LEAST_CONFIDENCE = 0.4
 # a second line this strong, and this strong beside the best, is not chance
-SECOND, SECOND_SHARE = 10.0, 0.2
+SECOND, SECOND_SHARE = 10.0, 0.1
 # chunks that the line goes through; their lags are not trusted to be finer
 FITTED, FINEST_S = 240, 5e-5
 # the drift is told where the common sound is this long and the standard error no greater

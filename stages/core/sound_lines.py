@@ -14,8 +14,6 @@ APART_S = 0.25
 NEAR_S = 1e-3
 # chunks agree with a line that passes them within this
 GRID_S = 0.25e-3
-# keeps a variance of nothing above zero
-TINY = 1e-12
 # a chunk is off the line where it matches this well elsewhere, and twice as well as on the line
 SURE, OFF_GAIN = 10.0, 2.0
 OFF_FROM_S, OFF_TO_S, OFF_SHARE = 0.01, 0.25, 0.15
@@ -28,8 +26,8 @@ class Line(NamedTuple):
     drift: float
     score: float
 
-    def lag(self, time_s: float) -> float:
-        """Return the lag at a time [s]."""
+    def lag(self, time_s: np.ndarray) -> np.ndarray:
+        """Return the lags at times [s]."""
         return self.offset_s + self.drift * time_s
 
 
@@ -73,6 +71,9 @@ def _through(sounds: sound_matching.Sounds, time_s: float, lag: int) -> Line:
     The score is `(sum_c r_c(lag + drift (t_c - t)) - p) / sqrt(sum_c var r_c)`, where p is what the
     best short piece gives: two vowels can be alike, but nothing around them is.
     """
+    sounds = sounds._replace(starts=sounds.starts[sound_matching.overlapping(sounds, lag)])
+    if not len(sounds.starts):
+        return Line(lag / sounds.rate, 0.0, 0.0)
     away = (sounds.starts + sounds.length / 2) / sounds.rate - time_s
     steps = int(np.ceil(GREATEST_DRIFT * np.abs(away).max() / GRID_S))
     drifts = np.linspace(-GREATEST_DRIFT, GREATEST_DRIFT, 2 * steps + 1) if steps else np.zeros(1)
@@ -92,20 +93,22 @@ def _through(sounds: sound_matching.Sounds, time_s: float, lag: int) -> Line:
     ]
     kept = total[row, column] - np.concatenate(pieces).max()
     offset = (lag + column - near) / sounds.rate - drifts[row] * time_s
-    return Line(float(offset), float(drifts[row]), float(kept / np.sqrt(max(variance, TINY))))
+    return Line(float(offset), float(drifts[row]), float(kept / np.sqrt(variance)))
 
 
 def follow(sounds: sound_matching.Sounds, line: Line) -> Lags:
     """Measure the lag of every chunk near a line; chunks that match nothing are left out."""
     near = int(np.ceil(NEAR_S * sounds.rate))
     inner, outer = round(OFF_FROM_S * sounds.rate), round(OFF_TO_S * sounds.rate)
+    centres = np.array([sound_matching.centre(sounds, start) for start in sounds.starts.tolist()])
+    times = centres / sounds.rate
+    lags = np.rint(line.lag(times) * sounds.rate).astype(int)
+    heard = sound_matching.overlapping(sounds, lags)
     rows = []
-    for start in sounds.starts.tolist():
-        time = sound_matching.centre(sounds, start) / sounds.rate
-        lag = round(line.lag(time) * sounds.rate)
+    for start, time, lag in zip(sounds.starts[heard], times[heard], lags[heard], strict=True):
         correlation, variance = sound_matching.around(sounds, start, lag, outer)
         place = outer - near + int(correlation[outer - near : outer + near + 1].argmax())
-        if variance > 0 and correlation[place] > 0:
+        if correlation[place] > 0:
             off = max(correlation[: outer - inner].max(), correlation[outer + inner + 1 :].max())
             exact = lag - outer + place + _summit(correlation[place - 1 : place + 2])
             scores = np.array([correlation[place], off]) / np.sqrt(variance)

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 CHUNK_S = 4.0
+OVERLAP_S = 0.5
 PIECE_S = 0.25
 CELL_S = 0.05
 BEST_PER_CHUNK = 8
@@ -45,12 +46,12 @@ class Matches(NamedTuple):
 
 
 def cut(one: np.ndarray, other: np.ndarray, rate: int) -> Sounds:
-    """Cut the one sound into chunks of about `CHUNK_S`; those without sound are left out."""
+    """Cut the one sound into chunks of about `CHUNK_S`; where nothing is heard, there are none."""
     chunks = max(1, round(len(one) / (CHUNK_S * rate)))
     length = len(one) // chunks
     starts = np.arange(chunks) * length
-    sounding = [_energy(one[start : start + length]) > 0 for start in starts]
     quiet = QUIET * _energy(other) / max(len(other), 1)
+    sounding = [quiet > 0 and _energy(one[start : start + length]) > 0 for start in starts]
     return Sounds(one, other, starts[sounding], length, rate, quiet)
 
 
@@ -97,6 +98,13 @@ def _running_power(block: np.ndarray, sounds: Sounds) -> np.ndarray:
     return np.maximum(power, sounds.quiet).astype(np.float32)
 
 
+def overlapping(sounds: Sounds, lags: np.ndarray) -> np.ndarray:
+    """Return which chunks lie on the other sound for at least `OVERLAP_S`, each at its (C,) lag."""
+    first = np.maximum(sounds.starts + lags, 0)
+    last = np.minimum(sounds.starts + lags + sounds.length, len(sounds.other))
+    return last - first >= OVERLAP_S * sounds.rate
+
+
 def around(sounds: Sounds, start: int, lag: int, reach: int) -> tuple[np.ndarray, float]:
     """Correlate a chunk with the other sound near a lag.
 
@@ -110,7 +118,7 @@ def around(sounds: Sounds, start: int, lag: int, reach: int) -> tuple[np.ndarray
     Returns
     -------
     correlation : (2 reach + 1,) float array
-    variance : that of a correlation of unrelated sounds; 0 where the chunk lies outside the other
+    variance : that of a correlation of unrelated sounds
     """
     piece = sounds.one[start : start + sounds.length]
     place = _padded(sounds.other, start + lag - reach, sounds.length + 2 * reach)
