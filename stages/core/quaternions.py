@@ -27,3 +27,22 @@ def from_matrices(rotation: np.ndarray) -> np.ndarray:
     largest = np.argmax(squares, axis=1)
     column = products[np.arange(len(rotation)), :, largest]
     return column / np.linalg.norm(column, axis=1, keepdims=True)
+
+
+def from_angles(angles: np.ndarray) -> np.ndarray:
+    """Return the quaternions of turns about z, then x, then y: roll, pitch, yaw.
+
+    Parameters
+    ----------
+    angles : (T, 3) float array about y, x and z [rad]
+
+    Returns
+    -------
+    (T, 4) float array of length one
+    """
+    (sy, sx, sz), (cy, cx, cz) = np.sin(angles.T / 2), np.cos(angles.T / 2)
+    x = cy * sx * cz + sy * cx * sz
+    y = sy * cx * cz - cy * sx * sz
+    z = cy * cx * sz - sy * sx * cz
+    w = cy * cx * cz + sy * sx * sz
+    return np.stack([x, y, z, w], axis=1)

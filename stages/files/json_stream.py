@@ -9,7 +9,15 @@ from typing import Any
 from stages.files import errors, text_file
 
 BLANK = re.compile(r"[ \t\r\n]*")
+HEAD_BYTES = 64
 Decoded = tuple[Any, int]
+
+
+def starts_as_json(path: str | Path) -> bool:
+    """Say whether a text starts with a list or an object."""
+    with Path(path).open("rb") as stream:
+        head = stream.read(HEAD_BYTES).replace(b"\0", b"")
+    return head.lstrip(b"\xef\xbb\xbf\xff\xfe \t\r\n").startswith((b"{", b"["))
 
 
 def items(path: str | Path, lists: Collection[str]) -> Iterator[tuple[str, Any]]:

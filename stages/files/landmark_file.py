@@ -5,6 +5,7 @@ from pathlib import Path
 from stages.files import (
     errors,
     headed_text,
+    json_stream,
     landmark_columns,
     landmark_json,
     landmark_rows,
@@ -16,7 +17,6 @@ KNOWN = (
     "JSON of MediaPipe's points, text tables with columns x_0, y_0, ... (OpenFace, py-feat, "
     "MediaPipe) or index, x, y, keyface's lips_outer_00.x, or a folder of .pts files"
 )
-HEAD_BYTES = 64
 
 
 def read(path: str | Path) -> landmark_take.LandmarkTake:
@@ -32,7 +32,7 @@ def read(path: str | Path) -> landmark_take.LandmarkTake:
     if not Path(path).is_file():
         message = "no such landmarks: check the column landmarks of shots.tsv"
         raise errors.InputError(path, message)
-    if starts_as_json(path):
+    if json_stream.starts_as_json(path):
         return landmark_json.read(path)
     table = headed_text.read(path)
     if landmark_columns.sets(table.header):
@@ -43,13 +43,6 @@ def read(path: str | Path) -> landmark_take.LandmarkTake:
         raise errors.InputError(path, "is one frame: give the folder of all .pts files")
     first = ", ".join(table.header[:4])
     raise errors.InputError(path, f"holds no landmarks, it starts '{first[:60]}': give {KNOWN}")
-
-
-def starts_as_json(path: str | Path) -> bool:
-    """Say whether a text starts with a list or an object."""
-    with Path(path).open("rb") as stream:
-        head = stream.read(HEAD_BYTES).replace(b"\0", b"")
-    return head.lstrip(b"\xef\xbb\xbf\xff\xfe \t\r\n").startswith((b"{", b"["))
 
 
 def sources(path: str | Path) -> list[Path]:
