@@ -177,7 +177,7 @@ def _sudden_steps_of(away: np.ndarray) -> np.ndarray:
     speed = np.linalg.norm(motion, axis=1, keepdims=True)
     # motion that may be noise only adds its own
     noise = MOTION * np.median(speed[speed > 0]) if (speed > 0).any() else 0.0
-    motion *= np.maximum(1 - noise / np.maximum(speed, np.finfo(speed.dtype).tiny), 0)
+    motion *= np.maximum(speed - noise, 0) / np.where(speed > 0, speed, 1)
     sudden = np.linalg.norm(step[2 : count + 2] - motion, axis=1)
     seen = np.flatnonzero(np.isfinite(away[:, 0]))
     sudden[seen[:1]] = 0
