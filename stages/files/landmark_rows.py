@@ -101,9 +101,10 @@ def _stacked(
     count = max(len(face) for face in faces)
     points = np.full((len(faces), count, 2), np.nan)
     for row, face in enumerate(faces):
-        if len(face) not in (1, count) or (len(face) == count and set(face) != set(range(count))):
+        blank = len(face) == 1 and np.isnan(list(face.values())).all()
+        if not blank and set(face) != set(range(count)):
             message = f"{lines[row]}: its frame has {len(face)} points of {count}"
             raise errors.InputError(path, message + ": is it cut short? export all points")
-        if len(face) == count:
+        if not blank:
             points[row] = [face[index] for index in range(count)]
     return points
