@@ -24,8 +24,9 @@ NATS = 1024 * math.log(1.0001)
 SEARCH = {"beam": 1e-100, "pbeam": 1e-100, "wbeam": 1e-90, "bestpath": False}
 PEAK = 0.9
 SILENT = 1e-4
-# the phone step keeps phones times frames, so long sounds are cut in silences
-PIECE_S, SHORTEST_PIECE_S, SHORTEST_SILENCE_S = 30.0, 5.0, 0.1
+# long sounds are cut in silences: the phone step keeps phones times frames, and more sounds of a
+# piece compete the longer it is
+PIECE_S, SHORTEST_PIECE_S, SHORTEST_SILENCE_S = 10.0, 3.0, 0.1
 SILENCE, UNKNOWN = "pau", "spn"
 FILLERS = {"SIL": SILENCE, "+NSN+": SILENCE, "+SPN+": UNKNOWN}
 VARIANT = re.compile(r"\(\d+\)$")

@@ -13,7 +13,7 @@ from stages.core import forced_alignment
 
 # mean score of speech [nats a frame]: below the first other words are spoken, below the second
 # that is in doubt; `python -m bench.phone_trial` shows both on right and on wrong words
-OTHER_WORDS, DOUBTFUL = -4.0, -3.0
+OTHER_WORDS, DOUBTFUL = -4.4, -4.0
 WORDS_TOGETHER = 8
 
 
