@@ -1,5 +1,5 @@
 import numpy as np
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from stages.core import cubic_resample
@@ -7,6 +7,7 @@ from stages.core import cubic_resample
 SEEDS = st.integers(0, 2**32 - 1)
 
 
+@settings(deadline=None, max_examples=40)
 @given(SEEDS, st.integers(4, 40))
 def test_cubics_are_reproduced_inside(seed, count):
     rng = np.random.default_rng(seed)
@@ -17,6 +18,7 @@ def test_cubics_are_reproduced_inside(seed, count):
     np.testing.assert_allclose(found, polynomial(wanted), atol=1e-10)
 
 
+@settings(deadline=None, max_examples=40)
 @given(SEEDS, st.integers(1, 30), st.integers(-40, 40))
 def test_whole_shifts_change_no_bit(seed, count, shift):
     values = np.random.default_rng(seed).normal(size=count).astype(np.float32)
@@ -27,6 +29,7 @@ def test_whole_shifts_change_no_bit(seed, count, shift):
     np.testing.assert_array_equal(found[inside], values[np.round(wanted).astype(int)[inside]])
 
 
+@settings(deadline=None, max_examples=40)
 @given(SEEDS, st.floats(-3, 3))
 def test_gaps_stay_and_grow_by_less_than_one_sample(seed, shift):
     rng = np.random.default_rng(seed)

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
@@ -36,6 +36,7 @@ def test_equation_2_turns_rows_the_way_it_is_read_here():
     np.testing.assert_allclose(translation[0], shift, atol=1e-12)
 
 
+@settings(deadline=None, max_examples=40)
 @given(SEEDS, METHODS, st.sampled_from([None, 0, 7]))
 def test_a_rigid_head_is_recovered_exactly(seed, method, origin):
     _, neutral, rotations, shifts, points = take(seed)
@@ -46,6 +47,7 @@ def test_a_rigid_head_is_recovered_exactly(seed, method, origin):
     np.testing.assert_allclose(face, np.broadcast_to(neutral, face.shape), atol=1e-9)
 
 
+@settings(deadline=None, max_examples=40)
 @given(SEEDS, METHODS, st.floats(0, 3))
 def test_the_result_is_a_rotation_whatever_the_points_do(seed, method, noise):
     rng, neutral, rotations, shifts, _ = take(seed)
@@ -63,6 +65,7 @@ def test_the_result_is_a_rotation_whatever_the_points_do(seed, method, noise):
     )
 
 
+@settings(deadline=None, max_examples=40)
 @given(SEEDS)
 def test_the_weighted_fit_is_scipys(seed):
     rng, neutral, _, _, points = take(seed, frames=4)
@@ -98,6 +101,7 @@ def test_frames_that_tell_no_rotation_stay_unknown():
     assert np.isnan(rigid_motion.fit(line[None] + 1, line, np.ones(9))[0]).all()
 
 
+@settings(deadline=None, max_examples=40)
 @given(SEEDS, st.lists(st.integers(0, 29), max_size=25))
 def test_gaps_are_turned_through_evenly_and_signs_never_jump(seed, lost):
     rng = np.random.default_rng(seed)
@@ -128,6 +132,7 @@ def test_a_short_gap_lies_on_the_great_circle():
     np.testing.assert_allclose(shifts, angle[:, None] * [1.0, 2, 3], atol=1e-9)
 
 
+@settings(deadline=None, max_examples=40)
 @given(SEEDS)
 def test_quaternions_are_scipys(seed):
     rotations = Rotation.random(50, random_state=seed)
