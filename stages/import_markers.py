@@ -84,12 +84,11 @@ def _read(arguments: argparse.Namespace) -> tuple[list[str], np.ndarray, Fractio
     rate = marker_units.rate(path, take, arguments.rate)
     mapped = marker_map.read(arguments.marker_map) if arguments.marker_map else {}
     kept = marker_map.apply(path, take.names, arguments.marker_map, mapped)
-    renamed = sum(take.names[place] != name for place, name in kept.items())
-    left = len(take.names) - len(kept)
-    cli.logger.info(
-        "%d markers, %d of them renamed, %d left out, %d frames at %s Hz",
-        len(kept), renamed, left, len(take.points), rate,
-    )  # fmt: skip
+    cli.logger.info("%d markers, %d frames at %s Hz", len(kept), len(take.points), rate)
+    if left := [name for place, name in enumerate(take.names) if place not in kept]:
+        cli.logger.info("left out by the marker map: %s", ", ".join(left))
+    if bare := [n for p, n in kept.items() if n != take.names[p] and n not in mapped.values()]:
+        cli.logger.info("named without their subject: %d markers, such as %s", len(bare), bare[0])
     factor = marker_units.millimetres(path, arguments.unit, take.unit)
     axes = marker_units.axes(arguments.axes)
     if np.linalg.det(axes) < 0:

@@ -30,7 +30,8 @@ def align(points: np.ndarray) -> Motion:
     """Find the head's motion from all markers, stiff ones first and outliers last.
 
     Minimises `sum_p w_p rho(|R^T (x_tp - t) - m_p| / s_p)` for each frame, with `m` the median of
-    the aligned frames, `s_p` the median distance of marker p from it, `w_p = 1 / s_p^2` and
+    the aligned frames, `s_p` the median distance of marker p from it, or of all markers if that is
+    more, `w_p = 1 / s_p^2` and
     Geman and McClure's `rho`, by iteratively reweighted rigid fits.
 
     Parameters
@@ -86,7 +87,9 @@ def _median_face(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         face = np.full(face.shape, np.nan)
         face[known] = np.nanmedian(local[:, known], axis=0)
         distance = np.linalg.norm(local - face, axis=2)
-        spread[known] = np.maximum(np.nanmedian(distance[:, known], axis=0), STIFF_MM)
+        moved = np.nanmedian(distance[:, known], axis=0)
+        # else the frame would stick to the one marker that it stuck to first
+        spread[known] = np.maximum(moved, max(np.median(moved), STIFF_MM))
     return face, spread
 
 

@@ -224,20 +224,20 @@ def _exchanges(face: np.ndarray, expected: np.ndarray, stretches: list[Stretch])
     Two markers are exchanged where each is far nearer to the other's expected place than to its
     own, over a stretch that both share; both then get the union of their stretches.
     """
-    found = list(stretches)
+    found = sorted(stretches, key=lambda stretch: (stretch.first, stretch.marker))
     for one in range(len(found)):
         for other in range(one + 1, len(found)):
             p, q = found[one], found[other]
-            if p.partner >= 0 or q.partner >= 0 or p.marker == q.marker:
-                continue
-            both = min(p.last, q.last) - max(p.first, q.first) + 1
-            first, last = min(p.first, q.first), max(p.last, q.last)
-            if both < SAME_STRETCH * (last - first + 1):
+            if q.first > p.last or p.partner >= 0:
+                break
+            both = min(p.last, q.last) - q.first + 1
+            first, last = p.first, max(p.last, q.last)
+            if q.partner >= 0 or both < SAME_STRETCH * (last - first + 1):
                 continue
             if _nearer(face, expected, (p.marker, q.marker), slice(first, last + 1)):
                 found[one] = Stretch(p.marker, first, last, q.marker, True)
                 found[other] = Stretch(q.marker, first, last, p.marker, True)
-    return found
+    return sorted(found)
 
 
 def _nearer(face: np.ndarray, expected: np.ndarray, pair: tuple[int, int], frames: slice) -> bool:
