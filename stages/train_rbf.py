@@ -64,7 +64,7 @@ def build_parser() -> argparse.ArgumentParser:
         "--widths",
         required=True,
         choices=[PUBLISHED, CROSS_VALIDATED],
-        help="of the Gaussians; published: twice the usual distance of neighbouring pairs",
+        help="of the Gaussians; published: the median distance of two pairs",
     )
     parser.add_argument(
         "--min-confidence",
@@ -93,8 +93,9 @@ def main(argv: Sequence[str]) -> None:
         raise errors.InputError("--dimensions", message)
     examples = partial_projection.project(axes, noise, _tuned_frames(points, tuned))
     targets = np.stack([pair.weights for pair in tuned])
-    factor = regression_choice.PUBLISHED_FACTOR if options.widths == PUBLISHED else None
-    form = regression_choice.choose(examples, targets, options.regression, dimensions, factor)
+    form = regression_choice.choose(
+        examples, targets, options.regression, dimensions, options.widths == PUBLISHED
+    )
     cli.logger.info("%d pairs, %s: %s", len(tuned), options.regression, form)
     trained, _ = weight_regression.train(examples, targets, form)
     seen = examples[:, : max(form.linear_dimensions, form.rbf_dimensions)]

@@ -78,12 +78,12 @@ def decompose_kernel(kernel, free=None):
     """
     kernel = np.asarray(kernel, float)
     free = np.zeros((len(kernel), 0)) if free is None else np.asarray(free, float)
-    basis = np.linalg.qr(free)[0]
-    rest = kernel - basis @ (basis.T @ kernel)
-    rest = rest - (rest @ basis) @ basis.T
-    energy, left = np.linalg.eigh(0.5 * (rest + rest.T))
+    whole = np.linalg.qr(free, mode="complete")[0]
+    # in coordinates off the free columns, so that no small direction leans on them
+    basis, off = whole[:, : free.shape[1]], whole[:, free.shape[1] :]
+    energy, turned = np.linalg.eigh(off.T @ kernel @ off)
     kept = energy > energy.max(initial=0.0) * len(kernel) * np.finfo(float).eps
-    left, singular = left[:, kept], np.sqrt(energy[kept])
+    left, singular = off @ turned[:, kept], np.sqrt(energy[kept])
     return Design(free, left * singular, basis, left, singular, np.eye(len(singular)))
 
 

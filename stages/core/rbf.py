@@ -27,6 +27,15 @@ def nearest_distance(centres):
     return float(np.median(distance.min(axis=1)))
 
 
+def usual_factor(centres):
+    """Return the median distance of two centres over that of a centre from the nearest other."""
+    places = np.unique(centres, axis=0)
+    if len(places) < 2:
+        return 1.0
+    apart = np.sqrt(squared_distances(places, places)[np.triu_indices(len(places), 1)])
+    return float(np.median(apart)) / nearest_distance(centres)
+
+
 def basis(points, centres, width):
     """Return ``exp(-|x - c_k|^2 / 2 width^2)`` of every point and centre.
 
