@@ -100,7 +100,7 @@ def _weights(value: Any, names: Sequence[str]) -> dict[str, float]:
             if len(value) != len(names):
                 raise ValueError(f"has {len(value)} weights for {len(names)} names: correct them")
             return dict(zip(names, map(float, value), strict=True))
-        if isinstance(value[0], dict) and "score" in {_plain(key) for key in value[0]}:
+        if isinstance(value[0], dict) and {_plain(key) for key in value[0]} & set(CATEGORY):
             return dict(map(_category, value))
         if len(value) > 1:
             raise ValueError(f"has {len(value)} faces: keep one")
@@ -123,7 +123,10 @@ def _category(value: dict) -> tuple[str, float]:
     """Return name and weight of one of MediaPipe's categories."""
     plain = {_plain(key): one for key, one in value.items()}
     name = next((plain[key] for key in CATEGORY if plain.get(key)), "")
-    return str(name), float(next(plain[key] for key in SCORE if key in plain))
+    score = next((plain[key] for key in SCORE if key in plain), None)
+    if score is None:
+        raise ValueError(f"'{name}' has no score: export the categories with their scores")
+    return str(name), float(score)
 
 
 def _curves(
