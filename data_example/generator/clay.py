@@ -70,8 +70,8 @@ def lips(p, roll_upper=0.0, roll_lower=0.0):
     middle = inner + 0.5 * (outer - inner)
     middle[:, 2] += np.where(LOWER, 5.0, 4.0) * end * (1 - 0.7 * p["press"] - 0.9 * rolled)
     zero = 0 * end
-    behind = inner + np.column_stack([zero, sign * 5.0 * end, zero - 11])
-    throat = inner.mean(axis=0) + 0.02 * (inner - inner.mean(axis=0)) - [0, 0, 52]
+    behind = inner + np.column_stack([2.0 * ALONG, sign * 17.0 * end, zero - 17])
+    throat = inner.mean(axis=0) + 0.02 * (behind - inner.mean(axis=0)) - [0, 0, 58]
     return np.stack([throat, behind, inner, middle, outer])
 
 

@@ -7,8 +7,8 @@ import numpy as np
 from data_example.generator import clay, clay_shapes, fields, modelling, params
 
 SKIN, CHEEK, LIP = (0.90, 0.62, 0.45), (0.90, 0.45, 0.36), (0.76, 0.33, 0.28)
-DARK, GUM = (0.26, 0.06, 0.07), (0.55, 0.20, 0.20)
-LIPS = (DARK, GUM, LIP, (0.82, 0.40, 0.33), (0.86, 0.53, 0.40))
+DARK = (0.26, 0.06, 0.07)
+LIPS = (DARK, DARK, LIP, (0.82, 0.40, 0.33), (0.86, 0.53, 0.40))
 HAIR, WHITE = (0.20, 0.42, 0.44), (0.98, 0.97, 0.94)
 IRIS, PUPIL = (0.30, 0.55, 0.30), (0.05, 0.04, 0.05)
 TOOTH, TONGUE = (0.97, 0.95, 0.88), (0.86, 0.42, 0.42)
