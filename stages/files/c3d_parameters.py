@@ -71,6 +71,8 @@ def _values(section: bytes, start: int) -> list:
     count = math.prod(shape)
     if count == 0:
         return []
+    if count > len(section):
+        raise ValueError(f"{count} values in a section of {len(section)} bytes")
     values = np.frombuffer(section, TYPES[kind], count, start + 2 + len(shape))
     if kind != -1:
         return values.tolist()

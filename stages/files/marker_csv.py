@@ -36,7 +36,7 @@ def read(path: str | Path) -> marker_take.MarkerTake:
     unit_s = TIME_S[header[time].lower()] if time is not None else 1.0
     decimal = "." if separator == "," else ","
     rows = marker_rows.read(path, lines, header, wanted, frame, time, unit_s, decimal)
-    values, by_times = marker_rows.on_frames(path, rows, None)
+    values, by_times = marker_rows.on_frames(path, rows)
     points = values.reshape(len(values), len(markers), 3)
     zero = ~points.any(axis=2)
     # a marker that others are measured from lies in the origin on every frame

@@ -10,7 +10,7 @@ import numpy as np
 from stages.files import errors
 
 GAPS = frozenset(("", "na", "nan", "n/a", "null", "none", "-", "--"))
-RATE_SLACK = 0.01  # of a frame's length, as an average over the take
+SHORTEST_S = 1e-6
 TIME_SLACK = 0.25  # of a frame's length, of a single row
 
 
@@ -126,14 +126,13 @@ def _numbers(
     return row
 
 
-def on_frames(path: str | Path, rows: Rows, rate: float | None) -> tuple[np.ndarray, float | None]:
+def on_frames(path: str | Path, rows: Rows) -> tuple[np.ndarray, float | None]:
     """Put rows on consecutive frames, with empty ones where the file leaves frames out.
 
     Parameters
     ----------
     path : the file, for errors
     rows : what `read` gives
-    rate : frames per second that the file states; None if it does not
 
     Returns
     -------
@@ -149,8 +148,10 @@ def on_frames(path: str | Path, rows: Rows, rate: float | None) -> tuple[np.ndar
     if len(rows.frame):
         index = np.rint(rows.frame - rows.frame[0]).astype(np.int64)
     elif len(rows.time_s) > 1:
-        step = 1 / rate if rate else np.median(np.diff(rows.time_s))
-        index = np.rint((rows.time_s - rows.time_s[0]) / max(step, 1e-9)).astype(np.int64)
+        # step by step, as the median of rounded times is off by some percent
+        steps = np.diff(rows.time_s)
+        usual = max(float(np.median(steps)), SHORTEST_S)
+        index = np.concatenate([[0], np.cumsum(np.rint(steps / usual))]).astype(np.int64)
     _check_rising(path, rows, index, "frame number" if len(rows.frame) else "time")
     by_times = None
     if len(rows.time_s) > 1:

@@ -39,7 +39,7 @@ def read(path: str | Path) -> marker_take.MarkerTake:
     if len(rows.values) < promised:
         message = f"is cut short: {len(rows.values)} of {promised} promised frames"
         raise errors.InputError(path, message + "; copy or export it again")
-    values, by_times = marker_rows.on_frames(path, rows, stated["DataRate"])
+    values, by_times = marker_rows.on_frames(path, rows)
     points = values.reshape(len(values), len(names), 3)
     points[~points.any(axis=2)] = np.nan
     rates = {"DataRate": stated["DataRate"]}

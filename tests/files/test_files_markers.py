@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from stages.files import errors, marker_file, marker_map, marker_take, marker_units
+from stages.files import c3d_parameters, errors, marker_file, marker_map, marker_take, marker_units
 
 COORDINATES = st.floats(-2000, 2000, width=32).map(lambda value: value or 1.0)
 
@@ -149,6 +149,17 @@ def test_damaged_c3d_is_read_or_refused(tmp_path_factory, changes):
         assert take.points.nbytes < 10 * len(content)
 
 
+@pytest.mark.parametrize("kind", [4, 2, -1, 9])
+@pytest.mark.parametrize("shape", [(255,) * 9, (255, 255), (200,), (0, 3)])
+def test_c3d_parameters_that_promise_too_much_are_refused(kind, shape):
+    parameter = b"\x01\x01A\x00\x00" + bytes([kind % 256, len(shape), *shape]) + b"\x00" * 40
+    if 0 in shape:
+        assert c3d_parameters.read("a.c3d", parameter) == {":A": []}
+    else:
+        with pytest.raises(errors.InputError, match="a.c3d: its parameter section is damaged"):
+            c3d_parameters.read("a.c3d", parameter)
+
+
 @settings(max_examples=25, deadline=None)
 @given(takes())
 def test_trc_comes_back(tmp_path_factory, points):
@@ -193,6 +204,15 @@ def test_rows_that_a_table_leaves_out_are_gaps(tmp_path):
     read = marker_file.read(path)
     np.testing.assert_array_equal(read.points[:, 0, 0], [1, 2, np.nan, np.nan, 5, 6])
     assert read.rates["its times"] == pytest.approx(100)
+
+
+def test_rounded_times_do_not_drift(tmp_path):
+    path = tmp_path / "a.csv"
+    rows = "".join(f"{frame / 120:.3f},{frame + 1},1,1\n" for frame in range(900))
+    path.write_text("time,a_x,a_y,a_z\n" + rows)
+    read = marker_file.read(path)
+    np.testing.assert_array_equal(read.points[:, 0, 0], np.arange(1, 901))
+    assert str(marker_units.rate(path, read, "")) == "120"
 
 
 def test_a_marker_in_the_origin_throughout_is_no_gap(tmp_path):
