@@ -1,7 +1,8 @@
 """Write the page from which an animator tunes reference frames, and the table to fill in.
 
 Each frame has the film's picture at that moment, its points against the neutral, and weights to
-start from where the equation solve gives some. The table lists the frames that nobody has tuned.
+start from: what the pairs so far predict, or else what the equation solve gives. The table lists
+the frames that nobody has tuned.
 """
 
 import argparse
@@ -27,6 +28,7 @@ TITLES = {
     "extreme": ("Extremes", "The strongest poses of each emotion."),
     "coverage": ("Next", "What teaches most beyond all that is chosen or tuned already."),
 }
+NO_FILM = "-"
 SHOWN_WEIGHTS = 8
 LEAST_SHOWN = 0.05
 DOT = 1 / 110  # of the drawing's side
@@ -40,9 +42,9 @@ def build_parser() -> argparse.ArgumentParser:
     parser.add_argument("--references", required=True, help="the chosen frames, .parquet")
     parser.add_argument("--shots", required=True, nargs="+", help="names of the basis shots")
     parser.add_argument("--expressions", required=True, nargs="+", help="their expressions")
-    parser.add_argument("--videos", required=True, nargs="+", help="their films, '' where none is")
+    parser.add_argument("--videos", required=True, nargs="+", help="their films, - where none is")
     parser.add_argument("--points", required=True, choices=list(driving_points.AXES))
-    parser.add_argument("--starts", nargs="*", default=[], help="their solved weights, if any")
+    parser.add_argument("--starts", nargs="*", default=[], help="weights to start from, if any")
     parser.add_argument("--rig", required=True, help="rig.npz of the character")
     parser.add_argument("--pair-folder", required=True, help="where tables of pairs are kept")
     parser.add_argument("--template", required=True, help="template of the page")
@@ -75,7 +77,7 @@ def main(argv: Sequence[str]) -> None:
         "pairs": header["pairs"],
         "uncovered": None if uncovered is None else f"{uncovered:.0%}",
         "pair_folder": arguments.pair_folder,
-        "start": "the weights that the rig's shapes explain each frame with" if starts else "",
+        "start": "weights" if starts else "",
         "radius": f"{side * DOT:.4f}",
         "groups": _groups(rows, _pictures(arguments, rows), points, shapes, starts),
     }
@@ -88,7 +90,7 @@ def _starts(
     """Return the weights to start from, by shot and frame."""
     found = {}
     for shot, path in zip(arguments.shots, arguments.starts, strict=False):
-        solved = series.read(path, "solved")
+        solved = series.read(path, ("predicted", "solved"))
         values = {name.partition(".")[2]: column for name, column in solved.columns.items()}
         for row in rows:
             if row["shot"] == shot:
@@ -114,7 +116,7 @@ def _pictures(arguments: argparse.Namespace, rows: Sequence[dict]) -> dict[tuple
     found = {}
     for shot, video in zip(arguments.shots, arguments.videos, strict=True):
         own = [row for row in rows if row["shot"] == shot]
-        if video and own:
+        if video != NO_FILM and own:
             images = face_pictures.at_times(video, [row["time_s"] for row in own])
             for row, image in zip(own, images, strict=True):
                 found[shot, row["frame"]] = web_page.picture(image)

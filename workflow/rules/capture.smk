@@ -137,7 +137,7 @@ rule sync_audio:
     shell:
         "python -m stages.sync_audio"
         " --video {params.video:q}"
-        " --sound {params.sound:q}"
+        " --sound={params.sound:q}"
         " --offset-s={params.offset_s:q}"
         " --sync {output.sync:q}"
         " 2> {log:q}"
@@ -203,10 +203,10 @@ rule import_markers:
     shell:
         "python -m stages.import_markers"
         " --marker-file {params.marker_file:q}"
-        " --marker-map {params.marker_map:q}"
+        " --marker-map={params.marker_map:q}"
         " --unit {params.unit:q}"
         " --axes={params.axes:q}"
-        " --rate {params.rate:q}"
+        " --rate={params.rate:q}"
         " --max-gap-s {params.max_gap_s}"
         " --markers {output.markers:q}"
         " --faults {output.faults:q}"

@@ -83,11 +83,11 @@ def pair_expressions(wildcards):
 
 
 def pair_cells(column):
-    """Return a function that gives a column of these shots."""
+    """Return a function that gives a column of these shots, a dash for a blank cell."""
 
     def values(wildcards):
         rows = shots_of(wildcards.actor, points_of(wildcards), ["yes"])
-        return [row[column] for row in rows]
+        return [row[column] or "-" for row in rows]
 
     return values
 
@@ -108,12 +108,25 @@ def pair_phones(wildcards):
     return expand("results/shots/{shot}/phones.parquet", shot=pair_phone_shots(wildcards))
 
 
+def pair_count(wildcards):
+    """Return how many pairs of these shots there are; what is wrong with them is said later."""
+    shots, count = pair_shots(wildcards), 0
+    for path in pair_tables(wildcards):
+        lines = Path(path).read_text(encoding="utf-8-sig", errors="replace").splitlines()
+        count += sum(re.split("[\t,]", line)[0].strip() in shots for line in lines)
+    return count
+
+
 def pair_starts(wildcards):
-    """Return what the equation solve makes of these shots, where virtual markers are known."""
-    known = character_row(wildcards.character)["virtual_markers"]
-    take = "results/takes/{shot}/{character}/solved.parquet"
-    shots = pair_shots(wildcards) if known else []
-    return expand(take, shot=shots, character=wildcards.character)
+    """Return what the pairs so far make of these shots, or else the equation solve, if it can."""
+    if pair_count(wildcards) >= regression_choice.FEWEST:
+        method = "predicted"
+    elif character_row(wildcards.character)["virtual_markers"]:
+        method = "solved"
+    else:
+        return []
+    take = f"results/takes/{{shot}}/{wildcards.character}/{method}.parquet"
+    return expand(take, shot=pair_shots(wildcards))
 
 
 def other_pair_shots(wildcards):

@@ -1,5 +1,6 @@
 """Tables, their validation, wildcards and input functions; no rules."""
 
+import re
 import shlex
 import sys
 from pathlib import Path
@@ -7,6 +8,7 @@ from pathlib import Path
 import jsonschema
 import yaml
 
+from stages.core import regression_choice
 from stages.files import errors, regions, show, source_code
 
 # the stages run with the Python that runs Snakemake, wherever that was started

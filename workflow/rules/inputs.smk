@@ -194,8 +194,9 @@ def lock_rows(wildcards):
 
 
 def played_characters(wildcards):
-    """Return the names of the characters that an actor plays."""
-    return [row["character"] for row in rows_of(SHOW["cast"], "actor", wildcards.actor)]
+    """Return the names of the characters that an actor plays by sculpts."""
+    played = [row["character"] for row in rows_of(SHOW["cast"], "actor", wildcards.actor)]
+    return [name for name in played if character_row(name)["method"] == "key_shapes"]
 
 
 def sculpt_states(wildcards):

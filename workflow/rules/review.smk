@@ -37,7 +37,7 @@ rule render_preview:
         video=shot_cell("video"),
     shell:
         "python -m stages.render_preview"
-        " --video {params.video:q}"
+        " --video={params.video:q}"
         " --tracked {input.tracked:q}"
         " --performance {input.performance:q}"
         " --point-set {input.point_set:q}"
@@ -81,7 +81,7 @@ rule render_controls:
         video=shot_cell("video"),
     shell:
         "python -m stages.render_controls"
-        " --video {params.video:q}"
+        " --video={params.video:q}"
         " --tracked {input.tracked:q}"
         " --performance {input.performance:q}"
         " --point-set {input.point_set:q}"
