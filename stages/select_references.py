@@ -25,7 +25,9 @@ def build_parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--shots", required=True, nargs="+", help="names of the basis shots")
     parser.add_argument("--expressions", required=True, nargs="+", help="their expressions")
-    parser.add_argument("--emotions", required=True, nargs="+", help="what is played in each")
+    parser.add_argument(
+        "--emotions", required=True, nargs="+", help="what is played in each, - for nothing"
+    )
     parser.add_argument("--phone-shots", nargs="*", default=[], help="those whose phones are known")
     parser.add_argument("--phones", nargs="*", default=[], help="their phones, .parquet")
     parser.add_argument("--points", required=True, choices=list(driving_points.AXES))
@@ -48,7 +50,7 @@ class _Frames:
 
     def __init__(self, arguments: argparse.Namespace):
         if len(arguments.emotions) != len(arguments.shots):
-            raise errors.InputError("--emotions", "give one for each shot, '' where none is played")
+            raise errors.InputError("--emotions", "give one for each shot, - where none is played")
         read = [driving_points.read(path, arguments.points) for path in arguments.expressions]
         counts = [len(each.frame) for each in read]
         starts = np.cumsum([0, *counts[:-1]]).tolist()
@@ -58,7 +60,9 @@ class _Frames:
         self.shot = np.repeat(arguments.shots, counts)
         self.frame = np.concatenate([each.frame for each in read])
         self.time_s = np.concatenate([each.time_s for each in read])
-        self.emotion = np.repeat(np.array(arguments.emotions, object), counts)
+        self.emotion = np.repeat(
+            np.array(["" if name == "-" else name for name in arguments.emotions], object), counts
+        )
         for path, each in zip(arguments.expressions, read, strict=True):
             if each.names != read[0].names:
                 message = f"has other points than {arguments.expressions[0]}"
