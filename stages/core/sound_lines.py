@@ -17,6 +17,8 @@ GRID_S = 0.25e-3
 # a chunk is off the line where it matches this well elsewhere, and twice as well as on the line
 SURE, OFF_GAIN = 10.0, 2.0
 OFF_FROM_S, OFF_TO_S, OFF_SHARE = 0.01, 0.25, 0.15
+# echoes hide the direct sound where another lag, this far off, is nearly as good
+ECHO_FROM_S, ECHO_TO_S, ECHO_GAIN = 0.004, 0.1, 1.5
 
 
 class Line(NamedTuple):
@@ -38,12 +40,14 @@ class Lags(NamedTuple):
     lag_s : lag of the greatest correlation on the line, between samples [s]
     score : its score
     score_off : the best score near the line, but not on it
+    echoed : (2,) the greatest sum over all chunks on the line, and that a little off it
     """
 
     time_s: np.ndarray
     lag_s: np.ndarray
     score: np.ndarray
     score_off: np.ndarray
+    echoed: np.ndarray
 
 
 def best(sounds: sound_matching.Sounds) -> list[Line]:
@@ -104,16 +108,20 @@ def follow(sounds: sound_matching.Sounds, line: Line) -> Lags:
     times = centres / sounds.rate
     lags = np.rint(line.lag(times) * sounds.rate).astype(int)
     heard = sound_matching.overlapping(sounds, lags)
-    rows = []
+    rows, profile = [], np.zeros(2 * outer + 1)
     for start, time, lag in zip(sounds.starts[heard], times[heard], lags[heard], strict=True):
         correlation, variance = sound_matching.around(sounds, start, lag, outer)
+        profile += correlation
         place = outer - near + int(correlation[outer - near : outer + near + 1].argmax())
         if correlation[place] > 0:
             off = max(correlation[: outer - inner].max(), correlation[outer + inner + 1 :].max())
             exact = lag - outer + place + _summit(correlation[place - 1 : place + 2])
             scores = np.array([correlation[place], off]) / np.sqrt(variance)
             rows.append((time, exact / sounds.rate, *scores))
-    return Lags(*np.array(rows).reshape(-1, 4).T)
+    distance = np.abs(np.arange(-outer, outer + 1)) / sounds.rate
+    echoes = (distance >= ECHO_FROM_S) & (distance <= ECHO_TO_S)
+    echoed = np.array([profile[distance <= NEAR_S].max(), profile[echoes].max()])
+    return Lags(*np.array(rows).reshape(-1, 4).T, echoed)
 
 
 def _summit(values: np.ndarray) -> float:
@@ -127,3 +135,8 @@ def broken(lags: Lags) -> bool:
     sure = np.maximum(lags.score, lags.score_off) > SURE
     off = sure & (lags.score_off > OFF_GAIN * lags.score)
     return bool(off.sum() > OFF_SHARE * sure.sum())
+
+
+def blurred(lags: Lags) -> bool:
+    """Tell whether an echo may be as loud as the direct sound, so that either could be it."""
+    return bool(lags.echoed[0] < ECHO_GAIN * lags.echoed[1])
