@@ -176,8 +176,12 @@ def _refusals(sentences, voices):
     silence = np.zeros(len(sentences[0]))
     noise = 0.01 * rng.standard_normal(len(silence))
     hum = spoilt_sounds.spoil(sentences[0], ("hum",), RATE, rng) - sentences[0]
-    for name, other in (("silence", silence), ("noise", noise), ("hum", hum)):
-        _refused(f"{name} with {name}", [(other, other + 0.001 * noise[::-1])], ())
+    for name, other, again in (
+        ("silence", silence, silence),
+        ("noise", noise, 0.01 * rng.standard_normal(len(noise))),
+        ("the same hum", hum, hum + 0.01 * noise),
+    ):
+        _refused(f"{name} with {name}", [(other, again)], ())
         _refused(f"sentences with {name}", [(one, other) for one in sentences], ())
     whole = np.concatenate(sentences)
     for lost in (0.05, 0.5, 5.0):
