@@ -28,6 +28,9 @@ MAX_WIDTH = 8192
 CHANNELS = ("R", "G", "B")
 CHUNK_FRAMES = 32
 FLOAT32_ROUNDING = 2.0**-24
+COUNTS = ("frames", "vertices", "width", "blocks", "fps_num", "fps_den")
+PIXEL_BYTES = 12
+MOST_PACKED = 1100  # to one: what the compression can do at most
 
 
 def layout(vertices: int, max_width: int = MAX_WIDTH) -> tuple[int, int]:
@@ -101,16 +104,23 @@ def read_json(path: str | Path) -> dict:
     Raises
     ------
     errors.InputError
-        if the file is none, or of another layout
+        if the file is none, or of another layout, or its counts do not fit together
     """
     try:
         description = json.loads(Path(path).read_text(encoding="utf-8"))
-    except (json.JSONDecodeError, UnicodeDecodeError) as error:
+    except (json.JSONDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise errors.InputError(path, f"no JSON: {error}; bake the take again") from error
-    if description.get("layout_version") != LAYOUT_VERSION:
-        found = description.get("layout_version")
+    found = description.get("layout_version") if isinstance(description, dict) else None
+    if found != LAYOUT_VERSION:
         message = f"layout version {found} in place of {LAYOUT_VERSION}: bake the take again"
         raise errors.InputError(path, message)
+    for name in (*COUNTS, "first_frame"):
+        value = description.get(name)
+        if type(value) is not int or (name in COUNTS and value < 1):
+            raise errors.InputError(path, f"{name} is '{value}', no count: bake the take again")
+    width, blocks = description["width"], description["blocks"]
+    if not (width - 1) * blocks < description["vertices"] <= width * blocks:
+        raise errors.InputError(path, "its rows do not fit its vertices: bake the take again")
     return description
 
 
@@ -137,6 +147,16 @@ class Reader:
         if (rows, width) != (self.frames * self.blocks, description["width"]):
             message = f"is {width} x {rows} in place of what its JSON says: bake the take again"
             raise errors.InputError(path, message)
+        if PIXEL_BYTES * rows * width > MOST_PACKED * Path(path).stat().st_size:
+            message = f"is too short to hold {width} x {rows} pixels: bake the take again"
+            raise errors.InputError(path, message)
+        self._path = path
+
+    @property
+    def time_s(self) -> np.ndarray:
+        """The times of the frames (T,), from the film's first picture on [s]."""
+        numbers = self.first_frame + np.arange(self.frames)
+        return numbers * self.rate.denominator / self.rate.numerator
 
     def nearest(self, time_s: float) -> int:
         """Return the frame, counted from 0, that plays at a time [s]; the ends are held."""
@@ -154,6 +174,10 @@ class Reader:
         end = min(start + CHUNK_FRAMES, self.frames)
         kind = Imath.PixelType(Imath.PixelType.FLOAT)
         rows = start * self.blocks, end * self.blocks - 1
-        planes = [np.frombuffer(self._file.channel(n, kind, *rows), "<f4") for n in CHANNELS]
+        try:
+            planes = [np.frombuffer(self._file.channel(n, kind, *rows), "<f4") for n in CHANNELS]
+        except (OSError, TypeError) as error:
+            message = f"breaks off or is damaged by frame {start} ({error}): bake the take again"
+            raise errors.InputError(self._path, message) from error
         chunk = np.stack(planes, axis=1).reshape(end - start, -1, 3)
         return np.ascontiguousarray(chunk[:, : self.vertices])
