@@ -24,6 +24,7 @@ from stages.core import (
 )
 from stages.files import curve_file, curve_take, delimited, errors, rate_text, series, shape_names
 
+LARGEST = 1e6  # weights beyond it are no weights
 DRIFT = 0.25  # of a frame, over the take
 
 
@@ -53,7 +54,7 @@ def main(argv: Sequence[str]) -> None:
     except errors.InputError:
         raise
     except ValueError as error:
-        message = f"{error}: give its rate, or export it again with times"
+        message = f"{error}: correct it, or give its rate"
         raise errors.InputError(path, message) from error
     count = len(take.curves)
     curves = dict(zip(take.curves, values[:, :count].T, strict=True))
@@ -73,7 +74,10 @@ def main(argv: Sequence[str]) -> None:
 
 
 def _stacked(take: curve_take.CurveTake) -> np.ndarray:
-    """Return curves and then angles as one array (T, C)."""
+    """Return curves and then angles as one array (T, C); refuse what can be no weight."""
+    for name, values in take.curves.items():
+        if (np.abs(values) > LARGEST).any():
+            raise ValueError(f"{name} reaches {np.nanmax(np.abs(values)):.4g}")
     return np.column_stack([*take.curves.values(), *take.angles.values()])
 
 

@@ -121,7 +121,7 @@ def _check_inside(path: str, pixels: np.ndarray, size: tuple[float, float] | Non
         return
     middle = np.nanmedian(pixels, axis=(0, 1))
     if (middle < 0).any() or (middle > size).any():
-        place = f"({middle[0]:.0f}, {middle[1]:.0f}), outside the picture {size[0]:g}x{size[1]:g}"
+        place = f"({middle[0]:.4g}, {middle[1]:.4g}), outside the picture {size[0]:g}x{size[1]:g}"
         raise errors.InputError(path, f"its points lie round {place}: were they made of this film?")
 
 

@@ -15,7 +15,7 @@ THOUSANDTHS = 1000  # other rates are rounded to these
 UNITS = ((0.5, 1.0), (500.0, 1e-3), (np.inf, 1e-6))
 
 
-def check_span(rows: int, frames: int) -> None:
+def check_span(rows: int, frames: float) -> None:
     """Refuse rows that stand for so many frames that most would be invented.
 
     Raises
@@ -24,7 +24,7 @@ def check_span(rows: int, frames: int) -> None:
         stating both
     """
     if frames > 2 * rows + 1000:
-        raise ValueError(f"{rows} rows stand for {frames} frames")
+        raise ValueError(f"{rows} rows stand for {frames:.6g} frames")
 
 
 def seconds(times: np.ndarray) -> np.ndarray:

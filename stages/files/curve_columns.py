@@ -40,11 +40,12 @@ def read(
     rows = marker_rows.read(
         path, sheet.lines, header, wanted, frame, time, unit_s or 1.0, sheet.decimal
     )
-    numbers = np.rint(rows.frame).astype(np.int64) if len(rows.frame) else None
+    places = [f"line {line}" for line in rows.lines]
+    numbers = headed_text.whole(path, rows.frame, places) if len(rows.frame) else None
     times = rows.time_s if len(rows.time_s) else None
     for what, keys in (("frame", numbers), ("time", times)):
         if keys is not None and (wrong := np.flatnonzero(np.diff(keys) <= 0)).size:
-            message = f"line {rows.lines[wrong[0] + 1]}: its {what} does not follow the one before"
+            message = f"{places[wrong[0] + 1]}: its {what} does not follow the one before"
             raise errors.InputError(path, message + ": keep one face a frame, sort the rows")
     if times is not None and unit_s is None:
         times = frame_clock.seconds(times)

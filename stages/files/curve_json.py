@@ -27,6 +27,7 @@ WEIGHTS = (
     *("channels", "coefficients", "blendshapeweights"),
 )
 NAMES = ("names", "facsnames", "blendshapenames", "shapenames", "channels", "channelnames")
+FASTEST = 1000  # frames per second
 RATE = ("fps", "framerate", "rate", "exportfps")
 CATEGORY, SCORE = ("categoryname", "name", "displayname"), ("score", "value", "weight")
 NUMBER = (*headed_text.FRAME, "frameid", "framenumber", "framenum", "index")
@@ -56,9 +57,9 @@ def read(path: str | Path, table: Sequence[shape_names.Shape]) -> curve_take.Cur
     for place, value in enumerate(frames):
         try:
             rows.append(_weights(value, listed))
-        except (TypeError, ValueError, KeyError) as error:
+            number, time, unit = _keys(value)
+        except (TypeError, ValueError, KeyError, OverflowError) as error:
             raise errors.InputError(path, f"frame {place} of the file: {error}") from error
-        number, time, unit = _keys(value)
         numbers.append(number)
         times.append(time)
         unit_s = unit_s or unit
@@ -171,4 +172,4 @@ def _rising(path: str | Path, keys: Sequence[float | None], what: str) -> np.nda
 def _rate(about: dict[str, Any]) -> Fraction | None:
     """Return the frames per second, if they are stated."""
     rate = next((about[key] for key in RATE if isinstance(about.get(key), int | float)), 0)
-    return frame_clock.snapped(rate) if 0 < rate < math.inf else None
+    return frame_clock.snapped(rate) if 0 < rate < FASTEST else None

@@ -11,11 +11,14 @@ import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+import numpy as np
+
 from stages.files import errors, text_file
 
 SEPARATORS = (",", ";", "\t")
 FRAME = ("frame", "frame_number", "frame_index", "frame_id", "frame_num", "frameindex", "frame_idx")
 TIME = re.compile(r"(?:time|timestamp|t)(?:[_ ]?\(?(us|ms|milliseconds|s|sec|seconds)\)?)?")
+LARGEST = 1e15
 UNIT_S = {"us": 1e-6, "ms": 1e-3, "milliseconds": 1e-3, "s": 1.0, "sec": 1.0, "seconds": 1.0}
 
 
@@ -69,6 +72,15 @@ def column(header: Sequence[str], names: Sequence[str]) -> int | None:
     """Return the first column that has one of the names, whatever its case; None if none has."""
     found = (index for index, name in enumerate(header) if name.lower() in names)
     return next(found, None)
+
+
+def whole(path: str | Path, values: np.ndarray, places: Sequence[str]) -> np.ndarray:
+    """Return frame numbers (T,) as whole ones; refuse others, naming the place."""
+    wrong = np.flatnonzero((np.abs(values) >= LARGEST) | (values != np.rint(values)))
+    if len(wrong):
+        message = f"{places[wrong[0]]}: {values[wrong[0]]:g} is no number of a frame"
+        raise errors.InputError(path, message + ": export it again")
+    return values.astype(np.int64)
 
 
 def time_unit(name: str) -> tuple[bool, float | None]:

@@ -147,8 +147,9 @@ def _frames(path: str | Path, rows: marker_rows.Rows) -> np.ndarray | None:
     """Return the frames' numbers, if there is a column of them."""
     if not len(rows.frame):
         return None
-    numbers = np.rint(rows.frame).astype(np.int64)
-    landmark_take.check_frames(path, numbers, [f"line {line}" for line in rows.lines])
+    places = [f"line {line}" for line in rows.lines]
+    numbers = headed_text.whole(path, rows.frame, places)
+    landmark_take.check_frames(path, numbers, places)
     return numbers
 
 

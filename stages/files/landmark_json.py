@@ -9,7 +9,7 @@ frame on each line. Beside the frames it may state `fps`, `width` and `height`.
 """
 
 import dataclasses
-import math
+import re
 from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
@@ -29,6 +29,9 @@ RATE = ("fps", "framerate", "rate")
 WIDTH, HEIGHT = ("width", "imagewidth", "framewidth"), ("height", "imageheight", "frameheight")
 CONFIDENCE = ("confidence", "score", "facescore")
 DIMENSIONS = (3, 2)
+PLAIN = re.compile(r"\d{1,18}(\.\d{1,18})?")  # numbers that were written as text
+FASTEST = 1000  # frames per second
+LARGEST = 1e18  # more than microseconds of today
 
 
 @dataclasses.dataclass(frozen=True)
@@ -60,14 +63,19 @@ def read(path: str | Path) -> landmark_take.LandmarkTake:
             continue
         try:
             frame = _frame(value)
-        except (TypeError, ValueError, KeyError) as error:
+        except (TypeError, ValueError, KeyError, OverflowError) as error:
             message = f"frame {len(frames)} of the file: {error}"
             raise errors.InputError(path, message + ": export one face a frame") from error
         if isinstance(value, dict):
             size = {name: one for name, one in _plainly(value).items() if name in WIDTH + HEIGHT}
             about = size | about
         frames.append(dataclasses.replace(frame, number=int(key)) if key.isdecimal() else frame)
-    return _take(path, frames, about)
+    try:
+        return _take(path, frames, about)
+    except errors.InputError:
+        raise
+    except ValueError as error:
+        raise errors.InputError(path, f"{error}: export it again") from error
 
 
 def _plain(key: str) -> str:
@@ -88,8 +96,12 @@ def _first(about: dict[str, Any], keys: Sequence[str]) -> Any:
 def _number(about: dict[str, Any], keys: Sequence[str]) -> float | None:
     """Return a finite number under one of some keys, if there is one."""
     found = _first(about, keys)
-    if isinstance(found, bool) or not isinstance(found, int | float) or not math.isfinite(found):
+    if isinstance(found, str) and PLAIN.fullmatch(found):
+        found = float(found)
+    if isinstance(found, bool) or not isinstance(found, int | float):
         return None
+    if not abs(found) < LARGEST:
+        raise ValueError(f"{keys[0]} is no sensible number")
     return float(found)
 
 
@@ -107,6 +119,8 @@ def _frame(value: Any) -> Frame:
             time, unit_s = _number(about, [key]), unit
     confidence = _number(about, CONFIDENCE)
     whole = None if number is None else round(number)
+    if whole != number:
+        raise ValueError(f"{number:g} is no number of a frame")
     return Frame(whole, time, unit_s, points, 1.0 if confidence is None else confidence)
 
 
@@ -164,7 +178,7 @@ def _numbers(path: str | Path, frames: Sequence[Frame]) -> np.ndarray | None:
     """Return the frames' numbers, if they have them."""
     if any(frame.number is None for frame in frames):
         return None
-    numbers = np.array([frame.number for frame in frames])
+    numbers = np.array([frame.number for frame in frames], np.int64)
     places = [f"frame {row} of the file" for row in range(len(frames))]
     landmark_take.check_frames(path, numbers, places)
     return numbers
@@ -191,4 +205,4 @@ def _size(about: dict[str, Any]) -> tuple[float, float] | None:
 def _rate(about: dict[str, Any]) -> Fraction | None:
     """Return the frames per second, if they are stated."""
     rate = _number(about, RATE)
-    return frame_clock.snapped(rate) if rate and rate > 0 else None
+    return frame_clock.snapped(rate) if rate and 0 < rate < FASTEST else None

@@ -56,7 +56,7 @@ def read(path: str | Path, table: headed_text.Table) -> landmark_take.LandmarkTa
     frames, times = (np.array(part) for part in zip(*keys, strict=True))
     number = None
     if columns[0] is not None:
-        number = np.rint(frames).astype(np.int64)
+        number = headed_text.whole(path, frames, lines)
         landmark_take.check_frames(path, number, lines)
     elif (np.diff(times) <= 0).any():
         raise errors.InputError(path, "its times do not rise: sort the rows")

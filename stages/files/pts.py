@@ -11,7 +11,7 @@ import numpy as np
 
 from stages.files import errors, landmark_take, text_file
 
-FORM = re.compile(r"\s*(?:version\s*:\s*\S+\s+)?n_points\s*:\s*(\d+)\s*\{([^{}]*)\}\s*")
+FORM = re.compile(r"\s*(?:version\s*:\s*\S+\s+)?n_points\s*:\s*(\d{1,9})\s*\{([^{}]*)\}\s*")
 NUMBER = re.compile(r"\d+")
 SHIFT = -0.5
 

@@ -174,7 +174,7 @@ def test_what_looks_wrong_is_listed(tmp_path):
         ("arkit_json", lambda t: t.replace('"jawOpen":', '"a": 1e999, "jawOpen":'), "not finite"),
         ("arkit_json", lambda t: t.replace('"frame": 9,', '"frame": 8,'), "its number 8 does not"),
         ("arrays_json", lambda t: t.replace('"EyeBlinkLeft", ', ""), "has 52 weights for 51"),
-        ("arrays_json", lambda t: t.replace("exportFps", "speed"), "has no times: give its rate"),
+        ("arrays_json", lambda t: t.replace("exportFps", "speed"), "has no times: correct it"),
         ("arkit_csv", lambda t: t.replace("_L", "_Q").replace("_R", "_Q"), "stands twice"),
         ("mediapipe_csv", lambda t: t.replace("\n4,", "\n3,"), "line 6: its frame does not"),
         ("mediapipe_csv", lambda t: t.replace("\n4,", '\n"4,'), "line "),

@@ -198,6 +198,22 @@ def test_faulty_pts_are_named(tmp_path, name, text, fault):
         run(tmp_path, folder, rate="25")
 
 
+@pytest.mark.parametrize("number", ["1e300", "1e18", "-5", "1.5", "1" + "0" * 400])
+@pytest.mark.parametrize("key", ["frame", "time"])
+def test_absurd_numbers_are_refused_before_anything_is_made_of_them(tmp_path, number, key):
+    frames = [{key: place, "landmarks": [[0.1, 0.2]] * 68} for place in (0, 1, "?")]
+    text = json.dumps({"width": 320, "height": 240, "frames": frames}).replace('"?"', number)
+    (tmp_path / "a.json").write_text(text)
+    columns = ",".join(f"x_{i},y_{i}" for i in range(68))
+    lines = [f"{key},{columns}", *(f"{place}{',50' * 136}" for place in (0, 1, number))]
+    (tmp_path / "a.csv").write_text("\n".join(lines))
+    for name in ("a.json", "a.csv"):
+        if (key, number) == ("time", "1.5"):
+            continue
+        with pytest.raises(errors.InputError, match=name):
+            run(tmp_path, tmp_path / name, rate="25")
+
+
 def test_an_empty_folder_and_a_missing_file(tmp_path):
     (tmp_path / "pts").mkdir()
     with pytest.raises(errors.InputError, match=r"holds no \.pts file"):
