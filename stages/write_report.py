@@ -10,16 +10,20 @@ import logging
 from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
-
 from stages import cli
-from stages.core import head_leak
-from stages.files import proposal_table, series, web_page
+from stages.files import proposal_table, report_facts, web_page
 
 DELIVERIES = ("mesh.glb", "mesh.exr", "mesh.pc2", "controls.csv", "weights.csv")
-MOTION = ("rotation.z", "translation.x", "translation.y", "scale")
 PROPOSALS = 8
-ASIDE = ("propose_labels", "write_brief", "check_sculpts")  # no take waits for them
+# no take waits for these
+ASIDE = (
+    "propose_labels",
+    "write_brief",
+    "check_sculpts",
+    "align_phones",
+    "select_references",
+    "write_references",
+)
 
 logger = logging.getLogger(__name__)
 
@@ -46,6 +50,7 @@ def main(argv: Sequence[str]) -> None:
         "takes": takes,
         "done": sum(not take["failure"] for take in takes),
         "shots": [_shot(arguments, shot, places) for shot in places],
+        "rigs": _rigs(arguments, places),
         "actors": _actors(arguments.results, sorted({actor for actor, _ in places.values()})),
         "proposals": _proposals(arguments.results, sorted({s for _, s in places.values()})),
     }
@@ -107,42 +112,27 @@ def _take(arguments: argparse.Namespace, place: str, places: dict) -> dict:
 def _shot(arguments: argparse.Namespace, shot: str, places: dict) -> dict:
     """Return what the page says of a shot."""
     folder = arguments.results / "shots" / shot
-    files = [folder / f"{name}.parquet" for name in ("expression", "head_motion", "key_weights")]
+    files = [folder / f"{name}.parquet" for name in ("expression", "head_motion")]
     whole = all(path.is_file() for path in files)
     failure = _failure(arguments.logs, _upstream(arguments, shot, places), whole)
     if failure:
         return {"name": shot, "failure": failure}
-    expression, motion, weights = (series.read(path, path.stem) for path in files)
-    confidence = np.nan_to_num(expression.columns["confidence"])
-    lost = int((confidence == 0).sum())
-    return {
-        "name": shot,
-        "failure": "",
-        "frames": len(confidence),
-        "strip": _strip(confidence),
-        "lost": f"{lost} ({lost / len(confidence):.0%})",
-        "leak": _leak(expression, motion),
-        "residuals": ", ".join(
-            f"{name.removesuffix('.residual')} {np.nanmedian(values):.4f}"
-            for name, values in weights.columns.items()
-            if name.endswith(".residual") and np.isfinite(values).any()
-        ),
-    }
+    return {"name": shot, "failure": ""} | report_facts.shot(folder)
 
 
-def _strip(confidence: np.ndarray) -> str:
-    """Return the SVG path of the area below a curve from 0 to 1."""
-    steps = "".join(f"V{1 - value:.2f}h1" for value in confidence)
-    return f"M0 1{steps}V1Z"
-
-
-def _leak(expression: series.Series, motion: series.Series) -> str:
-    """Return the head leak, with the face's strongest motion as the opening of the jaw."""
-    points = np.stack([v for n, v in expression.columns.items() if n.endswith((".x", ".y"))], 1)
-    parameters = np.stack([motion.columns[name] for name in MOTION], axis=1)
-    opening = head_leak.strongest_motion(points)
-    leak = head_leak.head_leak(parameters, opening, round(float(motion.rate)))
-    return "-" if np.isnan(leak) else f"{leak:.2f}"
+def _rigs(arguments: argparse.Namespace, places: dict) -> list[dict]:
+    """Return what the page says of characters that are driven by tuned pairs."""
+    played = {f"{places[shot][0]}/{character}" for shot, character in map(_split, arguments.takes)}
+    found = []
+    for place in sorted(played):
+        folder = arguments.results / "cast" / place
+        if (folder / "references" / "index.html").is_file():
+            page = f"../cast/{place}/references/index.html"
+            actor, character = _split(place)
+            found.append(
+                {"actor": actor, "character": character, "page": page} | report_facts.rig(folder)
+            )
+    return found
 
 
 def _actors(results: Path, actors: Sequence[str]) -> list[dict]:

@@ -1,0 +1,112 @@
+"""What a report says of shots, and of rigs that are driven by tuned pairs, from their files."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+
+from stages.core import head_leak
+from stages.files import (
+    driving_points,
+    marker_faults_table,
+    pair_residuals,
+    reference_table,
+    series,
+)
+
+MOTION_2D = ("rotation.z", "translation.x", "translation.y", "scale")
+MOTION_3D = tuple(f"{kind}.{axis}" for kind in ("rotation", "translation") for axis in "xyz")
+DOUBTED_PAIRS = 3
+
+
+def shot(folder: Path) -> dict:
+    """Return frames, confidence over time, lost frames, head leak, and notes on a shot."""
+    expression = series.read(folder / "expression.parquet", "expression")
+    motion = series.read(folder / "head_motion.parquet", "head_motion")
+    by_markers = not expression.meta.get("points")
+    name = "markers.confidence" if by_markers else "confidence"
+    confidence = np.nan_to_num(expression.columns[name])
+    lost = int((confidence == 0).sum())
+    notes = [_residuals(folder), _markers(folder), _sync(folder)]
+    return {
+        "frames": len(confidence),
+        "strip": _strip(confidence),
+        "lost": f"{lost} ({lost / len(confidence):.0%})",
+        "leak": _leak(folder, motion, "markers" if by_markers else "video"),
+        "notes": "; ".join(note for note in notes if note),
+    }
+
+
+def rig(folder: Path) -> dict:
+    """Return pairs, the share of frames that they do not reach, and the pairs to doubt first."""
+    _, header = reference_table.read(folder / "references.parquet")
+    uncovered, path = header["uncovered"], folder / "pair_residuals.parquet"
+    doubted = []
+    if path.is_file():
+        for row in pair_residuals.read(path)[:DOUBTED_PAIRS]:
+            pair = f"{row['animator']}'s {row['shot']} {row['frame']}"
+            partner = f"{row['partner_animator']}'s {row['partner_shot']} {row['partner_frame']}"
+            doubted.append(f"{pair} (off by {row['residual']:.2f}, see {partner})")
+    return {
+        "pairs": header["pairs"],
+        "uncovered": "-" if uncovered is None else f"{uncovered:.0%}",
+        "doubted": "; ".join(doubted),
+    }
+
+
+def _strip(confidence: np.ndarray) -> str:
+    """Return the SVG path of the area below a curve from 0 to 1."""
+    steps = "".join(f"V{1 - value:.2f}h1" for value in confidence)
+    return f"M0 1{steps}V1Z"
+
+
+def _leak(folder: Path, motion: series.Series, kind: str) -> str:
+    """Return the head leak, with the face's strongest motion as the opening of the jaw."""
+    points = driving_points.read(folder / "expression.parquet", kind).points
+    names = MOTION_3D if kind == "markers" else MOTION_2D
+    parameters = np.stack([motion.columns[name] for name in names], axis=1)
+    opening = head_leak.strongest_motion(points.reshape(len(points), -1))
+    leak = head_leak.head_leak(parameters, opening, round(float(motion.rate)))
+    return "-" if np.isnan(leak) else f"{leak:.2f}"
+
+
+def _residuals(folder: Path) -> str:
+    """Return how far the points lie from what the key shapes can show, by region."""
+    path = folder / "key_weights.parquet"
+    if not path.is_file():
+        return ""
+    parts = [
+        f"{name.removesuffix('.residual')} {np.nanmedian(values):.4f}"
+        for name, values in series.read(path, "key_weights").columns.items()
+        if name.endswith(".residual") and np.isfinite(values).any()
+    ]
+    return f"residuals {', '.join(parts)}"
+
+
+def _markers(folder: Path) -> str:
+    """Return which markers were mistracked, and how many gaps there were."""
+    path = folder / "marker_faults.tsv"
+    if not path.is_file():
+        return ""
+    faults = marker_faults_table.read(path)
+    gaps = [fault for fault in faults if fault.fault == "gap"]
+    left = sum(fault.cure == "left" for fault in gaps)
+    wrong = [fault for fault in faults if fault.fault != "gap"]
+    words = [
+        f"{fault.marker} {fault.fault} {fault.first_frame}-{fault.last_frame} {fault.cure}"
+        for fault in wrong
+    ]
+    open_gaps = f" ({left} too long to fill)" if left else ""
+    return f"markers: {len(gaps)} gaps{open_gaps}" + "".join(f", {word}" for word in words)
+
+
+def _sync(folder: Path) -> str:
+    """Return where the marker system's clock stands against the film's."""
+    path = folder / "sync.json"
+    if not path.is_file():
+        return ""
+    found = json.loads(path.read_text(encoding="utf-8"))
+    if found["refused"]:
+        return f"sync refused: {found['reason']}"
+    drift = f", drift {found['drift_ppm']:.0f} ppm" if found["drift_ppm"] else ""
+    return f"markers start {found['offset_s']:+.3f} s on the film{drift}"
