@@ -64,7 +64,7 @@ def build_parser() -> argparse.ArgumentParser:
         "--widths",
         required=True,
         choices=[PUBLISHED, CROSS_VALIDATED],
-        help="of the Gaussians; published: the median distance of two pairs",
+        help="of the Gaussians; published: the RMS distance of two pairs",
     )
     parser.add_argument(
         "--min-confidence",

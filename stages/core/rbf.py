@@ -28,12 +28,12 @@ def nearest_distance(centres):
 
 
 def usual_factor(centres):
-    """Return the median distance of two centres over that of a centre from the nearest other."""
+    """Return the RMS distance of two centres over that of a centre from the nearest other."""
     places = np.unique(centres, axis=0)
     if len(places) < 2:
         return 1.0
-    apart = np.sqrt(squared_distances(places, places)[np.triu_indices(len(places), 1)])
-    return float(np.median(apart)) / nearest_distance(centres)
+    apart = squared_distances(places, places)[np.triu_indices(len(places), 1)]
+    return float(np.sqrt(apart.mean())) / nearest_distance(centres)
 
 
 def basis(points, centres, width):

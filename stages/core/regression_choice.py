@@ -33,8 +33,8 @@ def choose(coordinates, targets, method, dimensions=None, usual_width=False):
     dimensions : int, optional
         Coordinates that every part sees; chosen when not given.
     usual_width : bool
-        Take the median distance of two examples for the width, not the best of `FACTORS`. The
-        paper gives no sigma; this is the common choice.
+        Take the root mean square distance of two examples for the width, not the best of `FACTORS`.
+        The paper gives no sigma; this is a common choice.
 
     Returns
     -------
