@@ -11,6 +11,7 @@ Printed:
 - words of others: sounds of three sentences or clips, with white noise, are given their own words,
   their own but for one sentence, and those of other sounds (of the same kind, and of both): the
   least and greatest agreement, and how many are refused or flagged
+- times of others: the same of GRID's clips with the times of words of other clips
 """
 
 import argparse
@@ -46,6 +47,7 @@ def main() -> None:
     if folder is not None:
         clips = [_clip(path) for path in sorted(folder.glob("*.align"))]
         _words(clips)
+        _times(clips)
         kinds["GRID"] = [(samples, [span.word for span in spans]) for samples, spans in clips]
     groups = []
     for kind, sounds in kinds.items():
@@ -100,6 +102,20 @@ def _words(clips):
         starts = [first.start_s for word, first in words if word]
         errors += [at - span.start_s for at, span in zip(starts, spans, strict=True)]
     _show("words, GRID", errors)
+
+
+def _times(clips):
+    """Print the agreement of clips with their own timed words and with those of others."""
+    for label, shift in (("own", 0), ("another clip's", 1), ("another clip's", 5)):
+        found = [
+            word_agreement.agreement(
+                forced_alignment.align_spans(samples, clips[(at + shift) % len(clips)][1])
+            )
+            for at, (samples, _) in enumerate(clips)
+        ]
+        flagged = sum(value < word_agreement.DOUBTFUL_TIMED for value in found)
+        span = f"{min(found):.2f} to {max(found):.2f}"
+        _say(f"timed words, GRID, {label}: agreement {span}, flagged {flagged} of {len(found)}")
 
 
 def _errors(segments, truth):

@@ -107,7 +107,8 @@ def _found(
         raise errors.InputError(path, f"{error} ({arguments.sound[0]}): {CURE}") from error
     except ValueError as error:
         raise errors.InputError(arguments.sound[0], f"{error}: see shots.tsv") from error
-    _check_agreement(path, arguments.sound[0], segments)
+    doubtful = word_agreement.DOUBTFUL_TIMED if spans else word_agreement.DOUBTFUL
+    _check_agreement(path, arguments.sound[0], segments, doubtful)
     names = [segment.phone for segment in segments]
     shown = visemes.look_up(path, table, names)
     return [
@@ -116,7 +117,9 @@ def _found(
     ]
 
 
-def _check_agreement(path: str, heard: str, segments: Sequence[forced_alignment.Segment]) -> None:
+def _check_agreement(
+    path: str, heard: str, segments: Sequence[forced_alignment.Segment], doubtful: float
+) -> None:
     """Refuse words that are not those spoken; say where they are in doubt."""
     total = word_agreement.agreement(segments)
     if np.isnan(total):
@@ -124,9 +127,9 @@ def _check_agreement(path: str, heard: str, segments: Sequence[forced_alignment.
     worst = word_agreement.worst_passage(segments)
     where = f"'{' '.join(worst.words)}' at {worst.start_s:.2f} s"
     if total < word_agreement.OTHER_WORDS:
-        message = f"other words are spoken in {heard} (agreement {total:.1f}, worst at {where})"
+        message = f"other words are spoken in {heard} (agreement {total:.1f}, worst {where})"
         raise errors.InputError(path, f"{message}: {CURE}")
-    if worst.agreement < word_agreement.DOUBTFUL:
+    if worst.agreement < doubtful:
         message = "%s: words in doubt, %s (agreement %.1f): listen there; see the column score"
         cli.logger.warning(message, path, where, worst.agreement)
 

@@ -14,6 +14,8 @@ from stages.core import forced_alignment
 # mean score of speech [nats a frame]: below the first other words are spoken, below the second
 # that is in doubt; `python -m bench.phone_trial` shows both on right and on wrong words
 OTHER_WORDS, DOUBTFUL = -4.4, -4.0
+# fewer sounds compete where every word is searched by itself, between known times
+DOUBTFUL_TIMED = -3.0
 WORDS_TOGETHER = 8
 
 
