@@ -35,8 +35,6 @@ def read(path: str | Path) -> Regions:
                 path, f"line {row.line}: {point} stands twice in {region}: remove one"
             )
         regions[region][point] = weight
-    if not regions:
-        raise errors.InputError(path, "names no region: add a row for each point or contour")
     return regions
 
 

@@ -37,8 +37,13 @@ def check_references(tables, face_regions):
             show.check_references(f"config/{name}.tsv", tables[name], column, names, where)
 
 
-def check_sense(tables):
+def check_sense(tables, face_regions):
     """Refuse rows that ask for what other cells do not give."""
+    if not face_regions and any(
+        row.cells["method"] == "key_shapes" for row in tables["characters"]
+    ):
+        message = "names no region, yet a character is driven by key shapes: add rows"
+        raise errors.InputError("config/regions.tsv", message)
     for row in tables["shots"]:
         check_shot(row)
     for row in tables["sessions"]:

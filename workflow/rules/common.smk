@@ -78,7 +78,7 @@ def validated_show():
         tables = {name: table(name) for name in TABLES}
         face_regions = regions.read("config/regions.tsv")
         check_references(tables, face_regions)
-        check_sense(tables)
+        check_sense(tables, face_regions)
         return tables, face_regions
     except errors.InputError as error:
         sys.exit(f"error: {error}")
