@@ -2,17 +2,13 @@
 
 import argparse
 import contextlib
-import dataclasses
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from stages import cli
-from stages.core import compose, head_transform, local_shapes, morph_sides, polygons
-from stages.files import atomic, errors, exr, gltf, pc2, rig, weights
-
-# frames that are composed at once
-CHUNK = 32
+from stages.core import local_shapes, morph_sides, polygons, target_pruning
+from stages.files import atomic, errors, exr, gltf, pc2, rig, take
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -24,54 +20,32 @@ def build_parser() -> argparse.ArgumentParser:
     parser.add_argument("--json", required=True, help="mesh.json to write: its layout")
     parser.add_argument("--pc2", required=True, help="mesh.pc2 to write: a point cache")
     parser.add_argument("--glb", required=True, help="mesh.glb to write: morph targets, animated")
+    parser.add_argument(
+        "--most-targets",
+        type=int,
+        default=0,
+        help="morph targets of the glTF that are active at once at most, such as 8; 0: all",
+    )
     return parser
 
 
-def _motion(character: rig.Rig, played: weights.Weights) -> gltf.Motion:
-    """Turn the head motion into the character's axes and unit."""
-    axes = head_transform.face_axes(character.up_axis)
-    return gltf.Motion(
-        times=played.time_s,
-        weights=played.shapes,
-        rotation=head_transform.turned_quaternions(played.rotation, axes),
-        translation=character.face_unit * played.translation @ axes.T,
-        scale=played.scale,
-    )
-
-
-def _surface(
-    character: rig.Rig, masked: local_shapes.LocalShapes, sides: morph_sides.Sides
-) -> gltf.Surface:
+def _surface(played: take.Take, sides: morph_sides.Sides) -> gltf.Surface:
     """Cut the polygons into triangles, find the normals of the neutral, name the targets."""
+    character = played.character
     triangles = polygons.triangulate(character.sizes, character.corners)
     normals = polygons.vertex_normals(character.neutral, triangles)
     names = [
         character.names[shape] + ("" if gain > 0 else ".minus")
         for shape, gain in zip(sides.shape, sides.gain, strict=True)
     ]
-    targets = local_shapes.select(masked, sides.shape, sides.gain)
+    targets = local_shapes.select(played.masked, sides.shape, sides.gain)
     return gltf.Surface(triangles, normals, names, sides.gain, targets)
 
 
-def _positions(
-    character: rig.Rig, masked: local_shapes.LocalShapes, motion: gltf.Motion
-) -> Iterator[np.ndarray]:
-    """Yield the (V, 3) float32 positions of every frame."""
-    blocks = compose.blocks(masked)
-    for frame in range(len(motion.weights)):
-        if frame % CHUNK == 0:
-            rows = motion.weights[frame : frame + CHUNK]
-            shapes = compose.compose(character.neutral, blocks, rows)
-        shape = shapes[frame % CHUNK]
-        rotation = head_transform.rotation_matrix(motion.rotation[frame])
-        yield head_transform.apply(
-            shape, rotation, motion.translation[frame], motion.scale[frame], character.pivot
-        ).astype(np.float32)
-
-
-def _form(character: rig.Rig, masked: local_shapes.LocalShapes, motion: gltf.Motion) -> dict:
+def _form(played: take.Take) -> dict:
     """Return what the JSON says of the character."""
-    active = (motion.weights != 0) & local_shapes.touched(masked)
+    character = played.character
+    active = (played.motion.weights != 0) & local_shapes.touched(played.masked)
     return {
         "axes": {"up": character.up_axis, "R": "x", "G": "y", "B": "z"},
         "unit": character.unit,
@@ -81,13 +55,28 @@ def _form(character: rig.Rig, masked: local_shapes.LocalShapes, motion: gltf.Mot
     }
 
 
+def _pruned(
+    surface: gltf.Surface, weights: np.ndarray, scale: np.ndarray, most: int, size: float
+) -> tuple[np.ndarray, dict]:
+    """Return the weights (T, M) that stay in the glTF, and what the JSON says of the others."""
+    if not most:
+        return weights, {}
+    stays = target_pruning.kept(weights, target_pruning.reach(surface.targets), most)
+    worst = target_pruning.worst_error(surface.targets, np.where(stays, 0.0, weights), scale)
+    share = worst / size if size else 0.0
+    cli.logger.info("glTF: at most %d targets at once, worst error %.3g of the size", most, share)
+    return np.where(stays, weights, 0.0), {
+        "glb_pruning": {"most_targets": most, "max_error": worst, "max_error_of_size": share}
+    }
+
+
 def main(argv: Sequence[str]) -> None:
     """Bake frame by frame, so that memory does not grow with the take."""
     options = build_parser().parse_args(argv)
-    character = rig.read(options.rig, "mesh")
-    played = weights.read(options.weights, character.names)
-    masked = local_shapes.masked(character.deltas, character.masks, character.mask_index)
-    motion = _motion(character, played)
+    if options.most_targets < 0:
+        raise errors.InputError("--most-targets", f"{options.most_targets} is negative: 0 is all")
+    played = take.read(options.rig, options.weights)
+    character = played.character
     vertices, frames, first = len(character.neutral), len(played.frame), int(played.frame[0])
     progress = cli.Progress("bake", frames)
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
@@ -100,20 +89,23 @@ def main(argv: Sequence[str]) -> None:
             exr.writer(paths[0], vertices, frames) as append_exr,
             pc2.writer(paths[2], vertices, frames, first) as append_pc2,
         ):
-            for positions in _positions(character, masked, motion):
-                if not np.isfinite(positions).all():
-                    raise errors.InputError(options.weights, "moves vertices beyond float32")
+            for positions in take.positions(played, options.weights):
                 low = np.minimum(low, positions.min(axis=0))
                 high = np.maximum(high, positions.max(axis=0))
                 append_exr(positions)
                 append_pc2(positions)
                 progress.step()
-        form = _form(character, masked, motion)
+        sides = morph_sides.split(played.motion.weights)
+        surface = _surface(played, sides)
+        size = float(np.linalg.norm(high - low))
+        stay, said = _pruned(
+            surface, sides.weights, played.motion.scale, options.most_targets, size
+        )
         bounds = np.stack([low, high])
+        form = _form(played) | said
         exr.write_json(paths[1], vertices, frames, first, played.rate, bounds, form)
-        sides = morph_sides.split(motion.weights)
-        sided = dataclasses.replace(motion, weights=sides.weights)
-        gltf.write(paths[3], character, _surface(character, masked, sides), sided)
+        motion = played.motion._replace(weights=stay)
+        gltf.write(paths[3], character, surface, motion, played.frame, played.rate)
 
 
 if __name__ == "__main__":

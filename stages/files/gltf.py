@@ -6,16 +6,18 @@ animated weights). Below `character`, evaluating gives exactly the positions of 
 One morph target for each shape that is not zero under its mask, and a second, `<name>.minus`, where
 its weight goes below zero; scaled so that weights stay within 0 and 1, since packages clamp them
 (`mesh.extras.gains` says by how much). Targets are sparse accessors, their names stand in
-`mesh.extras.targetNames`. Vertices are the file's, one to one; polygons are cut into fans.
+`mesh.extras.targetNames`, rate and first frame in `animations[0].extras`. Vertices are the file's,
+one to one; polygons are cut into fans.
 """
 
 import dataclasses
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 import pygltflib as gltf
 
-from stages.core import local_shapes
+from stages.core import local_shapes, srgb, take_motion
 from stages.files import rig
 
 UPRIGHT = {"y": [0.0, 0.0, 0.0, 1.0], "z": [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]}
@@ -40,26 +42,6 @@ class Surface:
     names: list[str]
     gains: np.ndarray
     targets: local_shapes.LocalShapes
-
-
-@dataclasses.dataclass(frozen=True)
-class Motion:
-    """How a character moves, in its own axes and unit.
-
-    Attributes
-    ----------
-    times : (T,) float array [s]
-    weights : (T, M) float array, of the morph targets
-    rotation : (T, 4) float array, quaternions x, y, z, w of length one
-    translation : (T, 3) float array [unit]
-    scale : (T,) float array
-    """
-
-    times: np.ndarray
-    weights: np.ndarray
-    rotation: np.ndarray
-    translation: np.ndarray
-    scale: np.ndarray
 
 
 class _Buffer:
@@ -130,7 +112,14 @@ class _Buffer:
         return len(self.accessors) - 1
 
 
-def write(path: str | Path, character: rig.Rig, surface: Surface, motion: Motion) -> None:
+def write(
+    path: str | Path,
+    character: rig.Rig,
+    surface: Surface,
+    motion: take_motion.TakeMotion,
+    frame: np.ndarray,
+    rate: Fraction,
+) -> None:
     """Write a moving character.
 
     Parameters
@@ -138,7 +127,9 @@ def write(path: str | Path, character: rig.Rig, surface: Surface, motion: Motion
     path : the GLB file
     character : the rig of a mesh
     surface : how it looks
-    motion : how it moves
+    motion : how it moves; weights (T, M) of the morph targets
+    frame : (T,) int array, numbers of the frames
+    rate : frames per second
     """
     buffer = _Buffer()
     moved = _float32(surface.targets)
@@ -149,7 +140,7 @@ def write(path: str | Path, character: rig.Rig, surface: Surface, motion: Motion
         nodes=_nodes(character, motion),
         meshes=[_mesh(buffer, character, surface, [moved[row] for row in used], used)],
         materials=[_material()],
-        animations=[_animation(buffer, character, motion, used)],
+        animations=[_animation(buffer, character, motion, used, frame, rate)],
     )
     document.accessors, document.bufferViews = buffer.accessors, buffer.views
     document.buffers = [gltf.Buffer(byteLength=len(buffer.data))]
@@ -157,7 +148,7 @@ def write(path: str | Path, character: rig.Rig, surface: Surface, motion: Motion
     document.save_binary(str(path))
 
 
-def _nodes(character: rig.Rig, motion: Motion) -> list[gltf.Node]:
+def _nodes(character: rig.Rig, motion: take_motion.TakeMotion) -> list[gltf.Node]:
     """Return the three nodes, at rest in the first frame's pose."""
     upright = gltf.Node(
         name="character",
@@ -175,7 +166,7 @@ def _nodes(character: rig.Rig, motion: Motion) -> list[gltf.Node]:
     return [upright, head, gltf.Node(name="mesh", mesh=0, translation=(-character.pivot).tolist())]
 
 
-def _places(character: rig.Rig, motion: Motion) -> np.ndarray:
+def _places(character: rig.Rig, motion: take_motion.TakeMotion) -> np.ndarray:
     """Return the (T, 3) translations of the head's node."""
     return character.pivot + motion.translation
 
@@ -209,7 +200,7 @@ def _mesh(
         NORMAL=buffer.dense(surface.normals, gltf.ARRAY_BUFFER),
     )
     if len(character.colours):
-        attributes.COLOR_0 = buffer.dense(_linear(character.colours), gltf.ARRAY_BUFFER)
+        attributes.COLOR_0 = buffer.dense(srgb.linear(character.colours), gltf.ARRAY_BUFFER)
     primitive = gltf.Primitive(
         attributes=attributes,
         indices=buffer.indices(surface.triangles),
@@ -228,16 +219,16 @@ def _mesh(
     )
 
 
-def _linear(colours: np.ndarray) -> np.ndarray:
-    """Return the light of sRGB colours, which is what COLOR_0 holds (IEC 61966-2-1)."""
-    return np.where(colours <= 0.04045, colours / 12.92, ((colours + 0.055) / 1.055) ** 2.4)
-
-
 def _animation(
-    buffer: _Buffer, character: rig.Rig, motion: Motion, used: np.ndarray
+    buffer: _Buffer,
+    character: rig.Rig,
+    motion: take_motion.TakeMotion,
+    used: np.ndarray,
+    frame: np.ndarray,
+    rate: Fraction,
 ) -> gltf.Animation:
     """Return the animation: three channels of the head, one of weights."""
-    times = buffer.dense(motion.times)
+    times = buffer.dense(frame * rate.denominator / rate.numerator)
     curves = [
         (1, "translation", _places(character, motion)),
         (1, "rotation", motion.rotation),
@@ -254,4 +245,10 @@ def _animation(
         )
         for number, (node, path, _) in enumerate(curves)
     ]
-    return gltf.Animation(name="take", samplers=samplers, channels=channels)
+    clock = {
+        "fps_num": rate.numerator,
+        "fps_den": rate.denominator,
+        "first_frame": int(frame[0]),
+        "frames": len(frame),
+    }
+    return gltf.Animation(name="take", samplers=samplers, channels=channels, extras=clock)
