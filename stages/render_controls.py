@@ -19,6 +19,7 @@ def build_parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--performance", nargs="*", default=[], help="performance.parquet, if markers are shown"
     )
+    parser.add_argument("--curves", nargs="*", default=[], help="curves.parquet, if they are shown")
     parser.add_argument("--point-set", required=True, help="table of contours")
     parser.add_argument("--regions", required=True, help="table of regions; each has a colour")
     parser.add_argument("--controls", required=True, help="controls.parquet of the take")
@@ -33,7 +34,12 @@ def main(argv: Sequence[str]) -> None:
     cv2.setNumThreads(1)
     options = build_parser().parse_args(argv)
     source = take_source.read(
-        options.video, options.tracked, options.performance, options.point_set, options.regions
+        options.video,
+        options.tracked,
+        options.performance,
+        options.curves,
+        options.point_set,
+        options.regions,
     )
     curves = series.read(options.controls, "controls")
     values = np.stack(list(curves.columns.values()), axis=1)

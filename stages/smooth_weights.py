@@ -31,7 +31,12 @@ HEAD_ROTATION = [f"rotation.{axis}" for axis in "xyzw"]
 HEAD_REST = [f"translation.{axis}" for axis in "xyz"] + ["scale"]
 FILM = "film"
 # the limits of what each method solves
-LIMITS = {"key_weights": (-np.inf, np.inf), "predicted": (0.0, 1.0), "solved": (0.0, 1.0)}
+LIMITS = {
+    "key_weights": (-np.inf, np.inf),
+    "mapped": (-np.inf, np.inf),
+    "predicted": (0.0, 1.0),
+    "solved": (0.0, 1.0),
+}
 CUTOFF_HZ = 10.0
 CUTOFF_OF_RATE = 1 / 3
 
@@ -40,10 +45,15 @@ def build_parser() -> argparse.ArgumentParser:
     """Return the stage's command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument(
-        "--solution", required=True, help="key_weights, predicted or solved .parquet of the take"
+        "--solution", required=True, help="key_weights, predicted, solved or mapped .parquet"
     )
     parser.add_argument("--head-motion", required=True, help="head_motion.parquet of the shot")
-    parser.add_argument("--expression", required=True, help="expression.parquet of the shot")
+    parser.add_argument(
+        "--expression",
+        nargs="*",
+        default=[],
+        help="expression.parquet, where points drive the take",
+    )
     parser.add_argument("--rig", required=True, help="rig.npz of the character")
     parser.add_argument(
         "--channels", required=True, help="table of gains, offsets and limits, or empty"
@@ -126,7 +136,7 @@ def _smoothed(
     """Filter the curves (T, K) at the source's rate."""
     if options.smoothing == "none":
         return values
-    gap = lip_gap.read(options.expression, options.lip_points, source.frame)
+    gap = lip_gap.read("".join(options.expression), options.lip_points, source.frame)
     highest = min(CUTOFF_HZ, rate * CUTOFF_OF_RATE) if rate < source.rate else CUTOFF_HZ
     smooth = asked.strength > 0
     cutoff = np.full(len(smooth), np.inf)
@@ -168,7 +178,7 @@ def main(argv: Sequence[str]) -> None:
     columns |= weights.head_columns(resample.slerp(turns, *place), resample.linear(rest, *place))
     sources = [options.solution, options.head_motion, options.rig]
     sources += [options.channels] if options.channels else []
-    sources += [options.expression] if options.smoothing != "none" and options.lip_points else []
+    sources += options.expression if options.smoothing != "none" and options.lip_points else []
     weights.write(options.weights, options.csv, frames, columns, rate, sources)
 
 

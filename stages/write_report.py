@@ -112,8 +112,7 @@ def _take(arguments: argparse.Namespace, place: str, places: dict) -> dict:
 def _shot(arguments: argparse.Namespace, shot: str, places: dict) -> dict:
     """Return what the page says of a shot."""
     folder = arguments.results / "shots" / shot
-    files = [folder / f"{name}.parquet" for name in ("expression", "head_motion")]
-    whole = all(path.is_file() for path in files)
+    whole = report_facts.is_whole(folder)
     failure = _failure(arguments.logs, _upstream(arguments, shot, places), whole)
     if failure:
         return {"name": shot, "failure": failure}

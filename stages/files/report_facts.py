@@ -7,6 +7,7 @@ import numpy as np
 
 from stages.core import head_leak
 from stages.files import (
+    delimited,
     driving_points,
     marker_faults_table,
     pair_residuals,
@@ -19,20 +20,42 @@ MOTION_3D = tuple(f"{kind}.{axis}" for kind in ("rotation", "translation") for a
 DOUBTED_PAIRS = 3
 
 
+def is_whole(folder: Path) -> bool:
+    """Return whether a shot has points without head motion, or recorded curves."""
+    points, curves = ("expression", "head_motion"), ("curves", "curve_head_motion")
+    return any(
+        all((folder / f"{n}.parquet").is_file() for n in names) for names in (points, curves)
+    )
+
+
 def shot(folder: Path) -> dict:
     """Return frames, confidence over time, lost frames, head leak, and notes on a shot."""
+    if not (folder / "expression.parquet").is_file():
+        return _curves(folder)
     expression = series.read(folder / "expression.parquet", "expression")
     motion = series.read(folder / "head_motion.parquet", "head_motion")
     by_markers = not expression.meta.get("points")
     name = "markers.confidence" if by_markers else "confidence"
     confidence = np.nan_to_num(expression.columns[name])
+    notes = [_residuals(folder), _markers(folder), _sync(folder), _checks(folder)]
+    leak = _leak(folder, motion, "markers" if by_markers else "video")
+    return _facts(confidence, leak, notes)
+
+
+def _curves(folder: Path) -> dict:
+    """Return the same of a shot that holds recorded curves alone."""
+    curves = series.read(folder / "curves.parquet", "curves")
+    return _facts(np.nan_to_num(curves.columns["confidence"]), "-", [_checks(folder)])
+
+
+def _facts(confidence: np.ndarray, leak: str, notes: list[str]) -> dict:
+    """Return a shot's row of the report."""
     lost = int((confidence == 0).sum())
-    notes = [_residuals(folder), _markers(folder), _sync(folder)]
     return {
         "frames": len(confidence),
         "strip": _strip(confidence),
         "lost": f"{lost} ({lost / len(confidence):.0%})",
-        "leak": _leak(folder, motion, "markers" if by_markers else "video"),
+        "leak": leak,
         "notes": "; ".join(note for note in notes if note),
     }
 
@@ -98,6 +121,17 @@ def _markers(folder: Path) -> str:
     ]
     open_gaps = f" ({left} too long to fill)" if left else ""
     return f"markers: {len(gaps)} gaps{open_gaps}" + "".join(f", {word}" for word in words)
+
+
+def _checks(folder: Path) -> str:
+    """Return what looks wrong in recorded curves."""
+    path = folder / "curve_checks.tsv"
+    if not path.is_file():
+        return ""
+    rows = delimited.read(path, ("check", "channel", "detail", "cure"))
+    return "; ".join(
+        " ".join(row.cells[name] for name in ("check", "channel", "detail")) for row in rows
+    )
 
 
 def _sync(folder: Path) -> str:

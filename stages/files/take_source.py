@@ -1,4 +1,4 @@
-"""What a take was made from, as a preview shows it: the film, its contours, the markers."""
+"""What a take was made from, as a preview shows it: film, contours, markers, curves."""
 
 import dataclasses
 import math
@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from stages.core import marker_panel, preview
+from stages.core import curve_panel, marker_panel, preview
 from stages.files import film, film_writer, series, tracked_film
 
 # previews of markers alone show no more pictures a second
@@ -41,6 +41,7 @@ def read(
     video: str,
     tracked: Sequence[str],
     performance: Sequence[str],
+    curves: Sequence[str],
     point_set_path: str,
     regions_path: str,
 ) -> Source:
@@ -51,6 +52,7 @@ def read(
     video : the film, or an empty text
     tracked : its tracked points, if they are to be drawn
     performance : the performance, if its markers are to be drawn
+    curves : recorded curves, which are drawn where there is no film
     point_set_path, regions_path : how contours are drawn
 
     Raises
@@ -59,17 +61,19 @@ def read(
         if one of the files does not fit
     """
     markers = _Markers(performance[0]) if performance else None
-    if not video:
+    if curves and not video:
+        return _curve_source(curves[0])
+    if not video and not tracked:
         return _marker_source(markers)
     if not tracked:
         return _film_source(video, markers)
     observed = tracked_film.read(video, tracked[0], point_set_path, regions_path)
     return Source(
-        preview.film_width(*film.size(video)) + (marker_panel.WIDTH if markers else 0),
+        preview.film_width(*observed.size) + (marker_panel.WIDTH if markers else 0),
         len(observed.frame),
-        film.nominal_rate(video),
+        observed.rate,
         float(observed.time_s[0]),
-        video,
+        video or None,
         _tracked_moments(observed, markers),
     )
 
@@ -115,6 +119,27 @@ def _marker_source(markers: _Markers) -> Source:
     )
     rate = markers.series.rate / step
     return Source(marker_panel.WIDTH, len(rows), rate, 0.0, None, moments)
+
+
+def _curve_source(path: str) -> Source:
+    """Return a source of recorded curves, of a whole fraction of their frames."""
+    read = series.read(path, "curves")
+    names = [name for name in read.columns if name != "confidence"]
+    values = np.nan_to_num(np.stack([read.columns[name] for name in names], axis=1))
+    shown = curve_panel.liveliest(values)
+    lanes = curve_panel.draw_lanes([names[c] for c in shown], values[:, shown], preview.HEIGHT)
+    step = max(1, math.ceil(read.rate / MOST_PER_S))
+    rows = range(0, len(read.frame), step)
+    moments = (
+        preview.Moment(
+            int(read.frame[row]),
+            float(read.time_s[row]),
+            curve_panel.draw_playhead(lanes, values[:, shown], row),
+            float(read.columns["confidence"][row]),
+        )
+        for row in rows
+    )
+    return Source(preview.HEIGHT, len(rows), read.rate / step, 0.0, None, moments)
 
 
 def _film_source(video: str, markers: _Markers | None) -> Source:

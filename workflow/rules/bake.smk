@@ -82,8 +82,8 @@ rule smooth_weights:
     input:
         character_source("channels"),
         solution=solution_of,
-        head_motion="results/shots/{shot}/head_motion.parquet",
-        expression="results/shots/{shot}/expression.parquet",
+        head_motion=head_motion_of,
+        expression=expression_of,
         rig=rig_of,
     output:
         weights="results/takes/{shot}/{character}/weights.parquet",
@@ -99,7 +99,7 @@ rule smooth_weights:
         code=code_of("smooth_weights"),
         channels=character_path("channels"),
         smoothing=character_cell("smoothing"),
-        lip_points=session_cell("lip_points"),
+        lip_points=lip_points_of,
         rate=character_cell("rate"),
         head=character_cell("head"),
     shell:

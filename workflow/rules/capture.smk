@@ -198,7 +198,7 @@ rule import_markers:
         marker_map=session_cell("marker_map"),
         unit=session_cell("marker_unit"),
         axes=session_cell("marker_axes"),
-        rate=session_cell("marker_rate"),
+        rate=session_cell("source_rate"),
         max_gap_s=config["max_marker_gap_s"],
     shell:
         "python -m stages.import_markers"

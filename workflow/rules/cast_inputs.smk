@@ -129,6 +129,18 @@ def pair_starts(wildcards):
     return expand(take, shot=pair_shots(wildcards))
 
 
+def curve_pair_shots(wildcards):
+    """Return the names of these shots for which curves were recorded too."""
+    rows = shots_of(wildcards.actor, points_of(wildcards), ["yes"])
+    return [row["shot"] for row in rows if row["curves"]]
+
+
+def mapped_pair_shots(wildcards):
+    """Return these curves on the character's rig."""
+    take = f"results/takes/{{shot}}/{wildcards.character}/mapped.parquet"
+    return expand(take, shot=curve_pair_shots(wildcards))
+
+
 def other_pair_shots(wildcards):
     """Return the shots that pairs in the character's folder may name for other actors or points."""
     own = cells(
@@ -155,6 +167,8 @@ def solution_of(wildcards):
     """Return the weights that a take's method finds, before smoothing."""
     method = character_row(wildcards.character)["method"]
     take = f"results/takes/{wildcards.shot}/{wildcards.character}"
+    if points_of(wildcards) == "curves":
+        return f"{take}/mapped.parquet"
     return {
         "key_shapes": f"results/shots/{wildcards.shot}/key_weights.parquet",
         "rbf": f"{take}/predicted.parquet",
@@ -166,6 +180,29 @@ def rig_of(wildcards):
     """Return the rig of a take's actor and character."""
     actor = session_of(wildcards.shot)["actor"]
     return f"results/cast/{actor}/{wildcards.character}/rig.npz"
+
+
+def head_motion_of(wildcards):
+    """Return the head motion of a take, from its points or recorded with its curves."""
+    name = "curve_head_motion" if points_of(wildcards) == "curves" else "head_motion"
+    return f"results/shots/{wildcards.shot}/{name}.parquet"
+
+
+def expression_of(wildcards):
+    """Return the expression of a take that points drive."""
+    path = f"results/shots/{wildcards.shot}/expression.parquet"
+    return [] if points_of(wildcards) == "curves" else [path]
+
+
+def lip_points_of(wildcards):
+    """Return the points that show lip closures in a take that points drive."""
+    return session_cell("lip_points")(wildcards) if expression_of(wildcards) else ""
+
+
+def shown_curves(wildcards):
+    """Return the recorded curves of a take that they drive."""
+    path = f"results/shots/{wildcards.shot}/curves.parquet"
+    return [path] if points_of(wildcards) == "curves" else []
 
 
 def shown_tracked(wildcards):

@@ -6,8 +6,10 @@ def has_points(tables, shot, points):
 
     A film beside markers is tracked only where its session has labels: else it is for people.
     """
-    if points == "markers":
-        return bool(shot["markers"])
+    if points in ("markers", "curves"):
+        return bool(shot[points])
+    if shot["landmarks"]:
+        return True
     same = [row.cells for row in tables["shots"] if row.cells["session"] == shot["session"]]
     labelled = any(row["labels"] for row in same)
     return bool(shot["video"]) and (labelled or not shot["markers"])
@@ -57,8 +59,10 @@ def check_sense(tables, face_regions):
 def check_shot(row):
     """Refuse a shot without points, or with cells that need others."""
     shot = row.cells
-    if not (shot["video"] or shot["markers"]):
-        refuse("shots", row, "video", "the shot has no film and no markers; give one")
+    if not any(shot[column] for column in ("video", "markers", "landmarks", "curves")):
+        refuse(
+            "shots", row, "video", "the shot has no film, markers, landmarks or curves; give one"
+        )
     for column, needed in (("labels", "video"), ("sync_offset_s", "markers")):
         if shot[column] and not shot[needed]:
             refuse("shots", row, column, f"is of no use without {needed}; clear it")
@@ -100,7 +104,7 @@ def check_cast(tables, row):
     """Refuse a take whose points do not exist, or do not fit the character's method."""
     method = row_of(tables["characters"], "character", row.cells["character"])["method"]
     points, wanted = row.cells["points"], show.listed(row.cells["shots"])
-    if points == "markers" and method == "key_shapes":
+    if points != "video" and method == "key_shapes":
         message = "method key_shapes is driven by the film; write video, or choose another method"
         refuse("cast", row, "points", message)
     sessions = [

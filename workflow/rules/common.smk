@@ -45,6 +45,12 @@ def data_table(name):
     return str(Path(workflow.basedir, "stages", "tables", name).resolve())
 
 
+def landmark_maps():
+    """Return the shipped tables that name other trackers' points."""
+    folder = Path(workflow.basedir, "stages", "tables", "landmarks").resolve()
+    return sorted(map(str, folder.glob("*.tsv")))
+
+
 def table(name):
     """Read and validate one table of the show."""
     return show.read(f"config/{name}.tsv", SCHEMAS / f"{name}.yaml")

@@ -2,9 +2,11 @@
 
 
 def tracked_shots(session):
-    """Return the names of a session's shots whose films are tracked."""
+    """Return the names of a session's shots whose films are tracked here."""
     shots = rows_of(SHOW["shots"], "session", session)
-    return [shot["shot"] for shot in shots if has_points(SHOW, shot, "video")]
+    return [
+        shot["shot"] for shot in shots if has_points(SHOW, shot, "video") and not shot["landmarks"]
+    ]
 
 
 def label_proposals():
@@ -57,10 +59,15 @@ def shot_files(column):
 
 
 def tracked_of(wildcards):
-    """Return the tracked points of a shot, if its film is tracked."""
+    """Return the film points of a shot, tracked here or elsewhere, if it has any."""
     shot = row_of(SHOW["shots"], "shot", wildcards.shot)
-    wanted = has_points(SHOW, shot, "video")
-    return [f"results/shots/{shot['shot']}/tracked.parquet"] if wanted else []
+    return [tracked_path(shot)] if has_points(SHOW, shot, "video") else []
+
+
+def tracked_path(shot):
+    """Return the points of a shot's film, tracked here or elsewhere."""
+    name = "imported" if shot["landmarks"] else "tracked"
+    return f"results/shots/{shot['shot']}/{name}.parquet"
 
 
 def markers_of(wildcards):
@@ -153,13 +160,15 @@ def briefs():
 
 
 def reference_pages():
-    """Return the page of reference frames of everyone who is driven by tuned pairs."""
-    played = [row.cells for row in SHOW["cast"]]
-    return [
-        f"results/cast/{row['actor']}/{row['character']}/references/index.html"
-        for row in played
-        if character_row(row["character"])["method"] == "rbf"
-    ]
+    """Return the reference frames of everyone who is driven by tuned pairs."""
+    pages = []
+    for row in (row.cells for row in SHOW["cast"]):
+        if character_row(row["character"])["method"] == "rbf" and row["points"] != "curves":
+            folder = f"results/cast/{row['actor']}/{row['character']}/references"
+            pages.append(f"{folder}/index.html")
+            if any(shot["curves"] for shot in shots_of(row["actor"], row["points"], ["yes"])):
+                pages.append(f"{folder}/curve_pairs.tsv")
+    return pages
 
 
 def basis_shots(wildcards):
@@ -183,8 +192,8 @@ def basis_films(wildcards):
 
 
 def basis_tracked(wildcards):
-    """Return the tracked points of an actor's basis shots."""
-    return expand("results/shots/{shot}/tracked.parquet", shot=basis_shots(wildcards))
+    """Return the film points of an actor's basis shots."""
+    return [tracked_path(shot) for shot in shots_of(wildcards.actor, "video", ["yes"])]
 
 
 def lock_rows(wildcards):

@@ -10,6 +10,7 @@ rule render_preview:
         shot_source("video"),
         tracked=shown_tracked,
         performance=shown_performance,
+        curves=shown_curves,
         point_set="config/point_set.tsv",
         regions="config/regions.tsv",
         exr="results/takes/{shot}/{character}/mesh.exr",
@@ -40,6 +41,7 @@ rule render_preview:
         " --video={params.video:q}"
         " --tracked {input.tracked:q}"
         " --performance {input.performance:q}"
+        " --curves {input.curves:q}"
         " --point-set {input.point_set:q}"
         " --regions {input.regions:q}"
         " --exr {input.exr:q}"
@@ -56,6 +58,7 @@ rule render_controls:
         shot_source("video"),
         tracked=shown_tracked,
         performance=shown_performance,
+        curves=shown_curves,
         point_set="config/point_set.tsv",
         regions="config/regions.tsv",
         controls="results/takes/{shot}/{character}/controls.parquet",
@@ -84,6 +87,7 @@ rule render_controls:
         " --video={params.video:q}"
         " --tracked {input.tracked:q}"
         " --performance {input.performance:q}"
+        " --curves {input.curves:q}"
         " --point-set {input.point_set:q}"
         " --regions {input.regions:q}"
         " --controls {input.controls:q}"
