@@ -45,6 +45,10 @@ def read(rig_path: str | Path, weights_path: str | Path) -> Take:
     played = weights.read(weights_path, character.names)
     if not len(played.frame):
         raise errors.InputError(weights_path, "has no frame: run smooth_weights again")
+    if not (played.scale > 0).all():
+        frame = played.frame[np.argmin(played.scale)]
+        message = f"frame {frame}: the head's scale is not positive: see align_head's result"
+        raise errors.InputError(weights_path, message)
     masked = local_shapes.masked(character.deltas, character.masks, character.mask_index)
     head = take_motion.TakeMotion(played.shapes, played.rotation, played.translation, played.scale)
     motion = take_motion.in_axes(head, character.up_axis, character.face_unit)

@@ -30,7 +30,16 @@ FACE_UNIT = 6.5
 class PlayedTake(SmallTake):
     """A folder with rig.npz, weights.parquet and the baked mesh."""
 
-    def __init__(self, folder, up="y", rate=Fraction(30), first=0, count=FRAMES, spread=1.0):
+    def __init__(
+        self,
+        folder,
+        up="y",
+        rate=Fraction(30),
+        first=0,
+        count=FRAMES,
+        spread=1.0,
+        scaled=True,
+    ):
         super().__init__(folder, up=up)
         self.rate, self.first, self.count = rate, first, count
         # beyond 0 to 1 where the spread is wide: shapes may do that
@@ -40,7 +49,7 @@ class PlayedTake(SmallTake):
         }
         self.played = {name: values.astype(np.float32) for name, values in columns.items()}
         turns, shift = np.resize(self.turns, (count, 4)), np.resize(self.shift, (count, 3))
-        scale = np.resize(self.scale, count)
+        scale = np.resize(self.scale, count) if scaled else np.ones(count)
         self.moves = [values.astype(np.float32).astype(float) for values in (turns, shift, scale)]
         assemble_rig.main(self.rig_options())
         head = weights.head_columns(turns, np.c_[shift, scale])
