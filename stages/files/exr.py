@@ -124,6 +124,18 @@ def read_json(path: str | Path) -> dict:
     return description
 
 
+def check_rig(path: str | Path, description: dict, vertex_hash: str) -> None:
+    """Refuse the description of a mesh that was baked from another rig.
+
+    Raises
+    ------
+    errors.InputError
+        if the hashes of neutral and polygons differ
+    """
+    if description.get("vertex_hash") != vertex_hash:
+        raise errors.InputError(path, "was baked from another rig: bake the take again")
+
+
 class Reader:
     """Baked positions, read a frame at a time.
 
