@@ -19,6 +19,7 @@ include: "workflow/rules/shapes.smk"
 include: "workflow/rules/weights.smk"
 include: "workflow/rules/rbf.smk"
 include: "workflow/rules/bake.smk"
+include: "workflow/rules/exports.smk"
 include: "workflow/rules/review.smk"
 
 

@@ -216,9 +216,19 @@ def shown_performance(wildcards):
     return [path] if points_of(wildcards) == "markers" else []
 
 
+# the files that each name in the column outputs stands for
+OUTPUTS = {"mdd": ["mesh.mdd"], "usd": ["mesh.usdc", "points.usdc"]}
+
+
 def takes():
-    """Return what shows that a take is done."""
-    return [f"results/takes/{shot}/{character}/preview.mp4" for shot, character in cast_takes()]
+    """Return what shows that a take is done, and the further files that are asked for."""
+    wanted = []
+    for shot, character in cast_takes():
+        folder = f"results/takes/{shot}/{character}"
+        wanted.append(f"{folder}/preview.mp4")
+        for name in show.listed(character_row(character)["outputs"]):
+            wanted += [f"{folder}/{file}" for file in OUTPUTS[name]]
+    return wanted
 
 
 def report_command():

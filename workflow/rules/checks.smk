@@ -96,6 +96,8 @@ def check_character(row):
     """Refuse a character without the file that its method needs."""
     needed = {"key_shapes": "masks", "blendshapes": "virtual_markers"}
     column = needed.get(row.cells["method"])
+    if row.cells["outputs"] and row.cells["neutral"].endswith(".csv"):
+        refuse("characters", row, "outputs", "a table of controls has no mesh; clear the cell")
     if column and not row.cells[column]:
         refuse("characters", row, column, f"method {row.cells['method']} needs it; name the file")
 

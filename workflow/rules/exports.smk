@@ -1,0 +1,56 @@
+"""Takes in further formats, as the column outputs of characters.tsv asks for them.
+
+Needs a take's mesh.exr, or its weights and the character's rig. Makes one or more files beside them.
+"""
+
+
+rule export_mdd:
+    input:
+        exr="results/takes/{shot}/{character}/mesh.exr",
+        json="results/takes/{shot}/{character}/mesh.json",
+    output:
+        mdd="results/takes/{shot}/{character}/mesh.mdd",
+    log:
+        "logs/export_mdd/{shot}/{character}.log",
+    benchmark:
+        "logs/export_mdd/{shot}/{character}.tsv"
+    wildcard_constraints:
+        character=of_kind("mesh"),
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("export_mdd"),
+    shell:
+        "python -m stages.export_mdd"
+        " --exr {input.exr:q}"
+        " --json {input.json:q}"
+        " --mdd {output.mdd:q}"
+        " 2> {log:q}"
+
+
+rule export_usd:
+    input:
+        rig=rig_of,
+        weights="results/takes/{shot}/{character}/weights.parquet",
+    output:
+        usd="results/takes/{shot}/{character}/mesh.usdc",
+        points="results/takes/{shot}/{character}/points.usdc",
+    log:
+        "logs/export_usd/{shot}/{character}.log",
+    benchmark:
+        "logs/export_usd/{shot}/{character}.tsv"
+    wildcard_constraints:
+        character=of_kind("mesh"),
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("export_usd"),
+    shell:
+        "python -m stages.export_usd"
+        " --rig {input.rig:q}"
+        " --weights {input.weights:q}"
+        " --usd {output.usd:q}"
+        " --points {output.points:q}"
+        " 2> {log:q}"
