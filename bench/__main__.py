@@ -1,8 +1,9 @@
 """Run the trials: `python -m bench` on the finished example show, `--data` on outside data.
 
-A folder with `labels.csv` and `reference/` tries the tracker; one with `ict-facekit/`,
-`facecap-head/` and `livelink/` tries key shapes and weights; a folder of such folders tries all.
-Without data it takes about five minutes, most of them for `reruns`.
+A folder with `labels.csv` and `reference/` tries the tracker; one with films and their `.align` sync
+and phones; one with `ict-facekit/`, `facecap-head/` and `livelink/` key shapes, weights, markers,
+head motion, regressions and filters; a folder of such folders tries all. Without data it takes
+about ten minutes, most of them for `reruns` and `large_rig`; with data about an hour.
 """
 
 import argparse
@@ -10,22 +11,34 @@ import subprocess
 import sys
 from pathlib import Path
 
-EXAMPLE = ("example_truth", "glb_against_exr", "reruns")
+RIGS = (
+    "key_shapes_trial",
+    "target_trial",
+    "marker_trial",
+    "head_motion_trial",
+    "equation_trial",
+    "rbf_trial",
+    "filter_trial",
+)
+SPEECH = ("sync_trial", "phone_trial")
 
 
 def trials(show: Path, data: Path | None) -> list[tuple[str, list[str]]]:
     """Return module and arguments of every trial that the show and the data allow."""
     if data is None:
         takes = sorted(str(path.parent) for path in show.glob("results/takes/*/*/mesh.glb"))
-        arguments = ([str(show)], takes, [str(show)])
-        return list(zip(EXAMPLE, arguments, strict=True))
+        example = [("example_truth", [str(show)]), ("rig_truth", [str(show)])]
+        example += [("glb_against_exr", takes), ("large_bake", []), ("large_rig", [])]
+        return [*example, ("reruns", [str(show)])]
     found = []
     for folder in (data, *sorted(path for path in data.iterdir() if path.is_dir())):
         option = ["--data", str(folder)]
         if (folder / "labels.csv").is_file() and (folder / "reference").is_dir():
             found.append(("track_folder", option))
+        if any(folder.glob("*.align")):
+            found += [(name, option) for name in SPEECH]
         if (folder / "ict-facekit").is_dir():
-            found += [("key_shapes_trial", option), ("target_trial", option)]
+            found += [(name, option) for name in RIGS]
     return found
 
 
