@@ -74,10 +74,10 @@ def synchronise(mocap: np.ndarray, video: np.ndarray, rate: int) -> Sync:
     if confidence < LEAST_CONFIDENCE:
         return _refused(NOTHING, confidence)
     lags = sound_lines.follow(sound_matching.liveliest(sounds, FITTED), lines[0])
-    if sound_lines.blurred(lags):
-        return _refused("too much echo to tell the direct sound", confidence)
     if sound_lines.broken(lags):
         return _refused("chunks disagree: sound is missing or repeated in one of them", confidence)
+    if sound_lines.blurred(lags):
+        return _refused("too much echo to tell the direct sound", confidence)
     return _fitted(lags, lines[0], swapped)._replace(confidence=confidence)
 
 

@@ -14,11 +14,13 @@ APART_S = 0.25
 NEAR_S = 1e-3
 # chunks agree with a line that passes them within this
 GRID_S = 0.25e-3
+# parts of a chunk that follow a line each for itself
+PARTS, TINY = 8, 1e-12
 # a chunk is off the line where it matches this well elsewhere, and twice as well as on the line
 SURE, OFF_GAIN = 10.0, 2.0
 OFF_FROM_S, OFF_TO_S, OFF_SHARE = 0.01, 0.25, 0.15
 # echoes hide the direct sound where another lag, this far off, is nearly as good
-ECHO_FROM_S, ECHO_TO_S, ECHO_GAIN = 0.004, 0.1, 1.5
+ECHO_FROM_S, ECHO_TO_S, ECHO_GAIN = 0.004, 0.1, 1.7
 
 
 class Line(NamedTuple):
@@ -104,24 +106,49 @@ def follow(sounds: sound_matching.Sounds, line: Line) -> Lags:
     """Measure the lag of every chunk near a line; chunks that match nothing are left out."""
     near = int(np.ceil(NEAR_S * sounds.rate))
     inner, outer = round(OFF_FROM_S * sounds.rate), round(OFF_TO_S * sounds.rate)
-    centres = np.array([sound_matching.centre(sounds, start) for start in sounds.starts.tolist()])
-    times = centres / sounds.rate
-    lags = np.rint(line.lag(times) * sounds.rate).astype(int)
-    heard = sound_matching.overlapping(sounds, lags)
+    middles = (sounds.starts + sounds.length / 2) / sounds.rate
+    lags = np.rint(line.lag(middles) * sounds.rate).astype(int)
     rows, profile = [], np.zeros(2 * outer + 1)
-    for start, time, lag in zip(sounds.starts[heard], times[heard], lags[heard], strict=True):
-        correlation, variance = sound_matching.around(sounds, start, lag, outer)
+    for start in sounds.starts[sound_matching.overlapping(sounds, lags)].tolist():
+        time, rounding, correlation, variance = _straightened(sounds, start, line, outer)
         profile += correlation
         place = outer - near + int(correlation[outer - near : outer + near + 1].argmax())
-        if correlation[place] > 0:
+        if correlation[place] > 0 and variance > 0:
             off = max(correlation[: outer - inner].max(), correlation[outer + inner + 1 :].max())
-            exact = lag - outer + place + _summit(correlation[place - 1 : place + 2])
+            off_line = place - outer + _summit(correlation[place - 1 : place + 2]) - rounding
             scores = np.array([correlation[place], off]) / np.sqrt(variance)
-            rows.append((time, exact / sounds.rate, *scores))
+            rows.append((time, line.lag(time) + off_line / sounds.rate, *scores))
     distance = np.abs(np.arange(-outer, outer + 1)) / sounds.rate
     echoes = (distance >= ECHO_FROM_S) & (distance <= ECHO_TO_S)
     echoed = np.array([profile[distance <= NEAR_S].max(), profile[echoes].max()])
     return Lags(*np.array(rows).reshape(-1, 4).T, echoed)
+
+
+def _straightened(
+    sounds: sound_matching.Sounds, start: int, line: Line, reach: int
+) -> tuple[float, float, np.ndarray, float]:
+    """Correlate the parts of a chunk each at the line's own lag, so that drift does not smear them.
+
+    Returns
+    -------
+    time_s : time about which the parts that both sounds hold lie [s]
+    rounding : what the line's lags are more than the whole samples used, in the mean [samples]
+    correlation : (2 reach + 1,) float array, in the middle the line's lags
+    variance : that of a correlation of unrelated sounds
+    """
+    parts = sounds._replace(length=sounds.length // PARTS)
+    firsts = start + parts.length * np.arange(PARTS)
+    times = (firsts + parts.length / 2) / sounds.rate
+    lags = line.lag(times) * sounds.rate
+    whole = np.rint(lags).astype(int)
+    found = [
+        sound_matching.around(parts, *place, reach)
+        for place in zip(firsts.tolist(), whole.tolist(), strict=True)
+    ]
+    variances = np.array([variance for _, variance in found])
+    share = variances / max(variances.sum(), TINY)
+    correlation = np.sum([correlation for correlation, _ in found], axis=0)
+    return float(share @ times), float(share @ (lags - whole)), correlation, variances.sum()
 
 
 def _summit(values: np.ndarray) -> float:

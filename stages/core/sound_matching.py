@@ -137,12 +137,6 @@ def pieces(sounds: Sounds, start: int, lag: int) -> np.ndarray:
     return np.add.reduceat(product, np.arange(0, sounds.length, round(PIECE_S * sounds.rate)))
 
 
-def centre(sounds: Sounds, start: int) -> float:
-    """Return the sample about which a chunk's energy lies."""
-    energy = sounds.one[start : start + sounds.length].astype(float) ** 2
-    return start + float(np.average(np.arange(len(energy)), weights=energy))
-
-
 def _energy(samples: np.ndarray) -> float:
     """Return the sum of squares."""
     return float(np.dot(samples, samples))
