@@ -20,8 +20,9 @@ WINDOW_S = 0.0256
 # PocketSphinx counts likelihoods in powers of 1.0001, and drops ten bits of their logarithm
 NATS = 1024 * math.log(1.0001)
 # wider than by default, so that noise does not lose the way; searching the best path again would
-# end some sounds in words of one frame, too short for their phones
-SEARCH = {"beam": 1e-100, "pbeam": 1e-100, "wbeam": 1e-90, "bestpath": False}
+# end some sounds in words of one frame, too short for their phones; pauses as likely as none, for
+# a first stop is else stretched over the silence before it
+SEARCH = {"beam": 1e-100, "pbeam": 1e-100, "wbeam": 1e-90, "bestpath": False, "silprob": 1.0}
 PEAK = 0.9
 SILENT = 1e-4
 # long sounds are cut in silences: the phone step keeps phones times frames, and more sounds of a
