@@ -1,9 +1,9 @@
 """Run the trials: `python -m bench` on the finished example show, `--data` on outside data.
 
-A folder with `labels.csv` and `reference/` tries the tracker; one with films and `.align` files sync
-and phones; one with `ict-facekit/`, `facecap-head/` and `livelink/` key shapes, weights, markers,
-head motion, regressions and filters; a folder of such folders tries all. Without data it takes
-about ten minutes, most of them for `reruns` and `large_rig`; with data about an hour.
+A folder with `labels.csv` and `reference/` tries the tracker; one with films and `.align` files
+sound sync and phones; one with `ict-facekit/`, `facecap-head/` and `livelink/` key shapes, weights,
+markers, head motion, regressions and filters; a folder of such folders tries all. Without data it
+takes about ten minutes, most of them for `reruns` and `large_rig`; with data about an hour.
 """
 
 import argparse
