@@ -217,7 +217,7 @@ def shown_performance(wildcards):
 
 
 # the files that each name in the column outputs stands for
-OUTPUTS = {"mdd": ["mesh.mdd"], "usd": ["mesh.usdc", "points.usdc"]}
+OUTPUTS = {"mdd": ["mesh.mdd"], "obj": ["obj"], "usd": ["mesh.usdc", "points.usdc"]}
 
 
 def takes():

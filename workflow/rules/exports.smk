@@ -54,3 +54,30 @@ rule export_usd:
         " --usd {output.usd:q}"
         " --points {output.points:q}"
         " 2> {log:q}"
+
+
+rule export_obj:
+    input:
+        exr="results/takes/{shot}/{character}/mesh.exr",
+        json="results/takes/{shot}/{character}/mesh.json",
+        rig=rig_of,
+    output:
+        obj_folder=directory("results/takes/{shot}/{character}/obj"),
+    log:
+        "logs/export_obj/{shot}/{character}.log",
+    benchmark:
+        "logs/export_obj/{shot}/{character}.tsv"
+    wildcard_constraints:
+        character=of_kind("mesh"),
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("export_obj"),
+    shell:
+        "python -m stages.export_obj"
+        " --exr {input.exr:q}"
+        " --json {input.json:q}"
+        " --rig {input.rig:q}"
+        " --obj-folder {output.obj_folder:q}"
+        " 2> {log:q}"
