@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from stages.core import clip_window
+from stages.core import clip_window, frame_least_squares
 
 TOLERANCE = 1e-4
 # of a window, and from one to the next
@@ -50,6 +50,8 @@ def solve(matrix, targets, lower, upper, smooth, ridge=0.0, tolerance=TOLERANCE)
     matrix, targets = np.asarray(matrix, float), np.asarray(targets, float)
     lower, upper, smooth = (np.asarray(array, float) for array in (lower, upper, smooth))
     _check(matrix, targets, lower, upper, smooth)
+    if not smooth.any():
+        return frame_least_squares.solve(matrix, targets, lower, upper, ridge, tolerance)
     given = clip_window.problem(matrix, ridge, smooth, lower, upper)
     weights = np.zeros((len(targets), matrix.shape[1]))
     for first, last in _windows(len(targets), 0):
@@ -75,8 +77,8 @@ def _check(matrix, targets, lower, upper, smooth):
     for array in (lower, upper, smooth):
         if array.shape != matrix.shape[1:]:
             raise ValueError(f"limits or strengths {array.shape} do not fit {matrix.shape}")
-    if (lower > upper).any() or (smooth < 0).any():
-        raise ValueError("a lower limit is above its upper one, or a strength is negative")
+    if (smooth < 0).any():
+        raise ValueError(f"strengths from {smooth.min():g} on are negative")
 
 
 def _windows(frames, offset):
@@ -88,10 +90,23 @@ def _windows(frames, offset):
 
 def _window(given, targets, weights, first, last, end):
     """Return frames of the clip as a window, held by two frames on either side, none after end."""
-    seen = np.isfinite(targets[first:last])
-    right = np.where(seen, targets[first:last], 0.0) @ given.matrix
+    part = targets[first:last]
+    seen = np.isfinite(part)
+    right = guess = np.where(seen, part, 0.0) @ given.matrix
+    if not seen.all():
+        guess = _bridged(part, seen) @ given.matrix
     before, after = weights[max(first - 2, 0) : first], weights[last : min(last + 2, end)]
-    return clip_window.Window(right, None if seen.all() else seen, before, after)
+    return clip_window.Window(right, guess, None if seen.all() else seen, before, after)
+
+
+def _bridged(targets, seen):
+    """Return targets (n, D) with straight lines over what was not observed."""
+    bridged = np.where(seen, targets, 0.0)
+    frames = np.arange(len(targets))
+    for column in np.flatnonzero(~seen.all(axis=0) & seen.any(axis=0)):
+        known = seen[:, column]
+        bridged[:, column] = np.interp(frames, frames[known], targets[known, column])
+    return bridged
 
 
 def _kkt_residual(given, targets, weights):

@@ -9,10 +9,10 @@ from typing import NamedTuple
 import numpy as np
 
 # step sizes as shares of the usual curvature of the data term, and how long each has its turn
-_STEPS = (0.03, 0.3, 3.0)
+_STEPS = (0.01, 0.1, 1.0, 10.0)
 _TURN = 10
 _RELAXATION = 1.8
-_ROUNDS = 12
+_ROUNDS = 10
 # of the inner solve on frames with points that were not observed
 _INNER, _INNER_STEPS = 0.1, 40
 
@@ -67,6 +67,8 @@ class Window(NamedTuple):
     ----------
     right : (n, K) float array
         Observed targets times the matrix.
+    guess : (n, K) float array
+        The same with a guess of what was not observed, for the start.
     seen : (n, D) bool array or None
         None where every coordinate of every frame was observed.
     before, after : (0 or 2, K) float array
@@ -74,13 +76,22 @@ class Window(NamedTuple):
     """
 
     right: np.ndarray
+    guess: np.ndarray
     seen: np.ndarray | None
     before: np.ndarray
     after: np.ndarray
 
 
 def problem(matrix, ridge, smooth, lower, upper):
-    """Return what all windows share, with the eigenvectors for every step size."""
+    """Return what all windows share, with the eigenvectors for every step size.
+
+    Raises
+    ------
+    ValueError
+        When a lower limit is above its upper one.
+    """
+    if (lower > upper).any():
+        raise ValueError(f"{np.count_nonzero(lower > upper)} lower limits are above their upper")
     gram = matrix.T @ matrix + ridge * np.eye(matrix.shape[1])
     usual = np.sqrt(gram.diagonal() * gram.diagonal().mean())
     steps = tuple(_step(gram, smooth, share * usual) for share in _STEPS)
@@ -90,6 +101,8 @@ def problem(matrix, ridge, smooth, lower, upper):
 def _step(gram, smooth, rho):
     """Solve the eigenproblem of one step size."""
     root = np.linalg.inv(np.linalg.cholesky(gram + np.diag(rho)))
+    if not smooth.any():
+        return Step(rho, root.T, np.zeros_like(rho), root.T @ root)
     share, Q = np.linalg.eigh((root * smooth) @ root.T)
     return Step(rho, root.T @ Q, np.maximum(share, 0.0), root.T @ root)
 
@@ -128,15 +141,14 @@ def kkt_residual(given, window, weights):
     """Return how far every frame's weights are from the optimality conditions.
 
     ``max_k |w_k - clip(w_k - g_k / h_k, lower_k, upper_k)|`` with g the gradient and h the second
-    derivative: the largest change that one weight would make if it alone were free. No unit.
+    derivative where everything was observed: the largest change that one weight would make if it
+    alone were free. No unit.
 
     Returns
     -------
     (n,) float array
     """
     length = _own(len(weights), window)[:, None] * given.smooth + given.gram.diagonal()
-    if window.seen is not None:
-        length -= ~window.seen @ given.matrix**2
     wanted = weights - gradient(given, window, weights) / length
     return np.abs(weights - np.clip(wanted, given.lower, given.upper)).max(axis=1, initial=0.0)
 
@@ -167,16 +179,17 @@ def solve(given, window, tolerance, start=None):
     """
     frames = _times(len(window.right), window.before, window.after) if given.smooth.any() else None
     still = np.zeros_like(window.right)
-    right = window.right - given.smooth * second_differences(window.before, still, window.after)
+    held = given.smooth * second_differences(window.before, still, window.after)
     if start is None:
-        start = np.clip(_stepped(given.steps[0], frames, right), given.lower, given.upper)
-    return _iterated(given, window, right, frames, start, tolerance)
+        start = _stepped(given.steps[0], frames, window.guess - held)
+        start = np.clip(start, given.lower, given.upper)
+    return _iterated(given, window, window.right - held, frames, start, tolerance)
 
 
 def _iterated(given, window, right, frames, weights, tolerance):
     """Return the weights (n, K) that steps and clips by turns lead to from a start.
 
-    Frames that nothing joins to others leave when they are done.
+    Where nothing joins frames to one another, all observed alike, each leaves when it is done.
     """
     answer, rows = weights.copy(), np.arange(len(weights))
     free, multiplier = weights, -gradient(given, window, weights)
@@ -189,8 +202,7 @@ def _iterated(given, window, right, frames, weights, tolerance):
             left = residual > tolerance
             rows, weights, free = rows[left], weights[left], free[left]
             right, multiplier = right[left], multiplier[left]
-            seen = None if window.seen is None else window.seen[left]
-            window = window._replace(right=window.right[left], seen=seen)
+            window = window._replace(right=window.right[left])
         step = given.steps[turn % len(given.steps)]
         for _ in range(_TURN * (1 + turn // (2 * len(given.steps)))):
             goal = right + step.rho * weights - multiplier
@@ -212,8 +224,8 @@ def _free(given, seen, step, frames, goal, start):
 
     def curved(weights):
         """Return ``(H + diag(rho)) w``."""
-        product = weights @ given.gram + step.rho * weights - _unseen(given, seen, weights)
-        return product if frames is None else product + given.smooth * (frames.bends @ weights)
+        product = weights @ given.gram - _unseen(given, seen, weights)
+        return product + step.rho * weights + given.smooth * (frames.bends @ weights)
 
     weights, rest = start, goal - curved(start)
     enough = _INNER * np.linalg.norm(rest)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stages.core import clip_least_squares
+from stages.core import clip_least_squares, frame_least_squares
 
 # what a shape of usual length, alone, gives up of its weight: next to nothing, but a hundredth
 # where there are more shapes than half of the coordinates, which noise could set at will
@@ -99,6 +99,12 @@ def targets(points, neutral, places, method):
     return centred.reshape(len(points), -1)
 
 
+def ridge(matrix):
+    """Return the ridge of a matrix (P D, K) whose columns are shapes, as `solve` takes it."""
+    coordinates, shapes = matrix.shape
+    return _usual(matrix) * (WIDE_RIDGE if shapes > WIDE * coordinates else RIDGE)
+
+
 def solve(points, neutral, places, deltas, method, lower=0.0, upper=1.0, strength=1.0, rate=60.0):
     """Solve the weights of every frame by one of `METHODS`.
 
@@ -150,7 +156,7 @@ def solve(points, neutral, places, deltas, method, lower=0.0, upper=1.0, strengt
     )
     matrix = deltas.reshape(len(deltas), -1).T
     usual = _usual(matrix)
-    ridge = usual * (WIDE_RIDGE if len(deltas) > WIDE * len(matrix) else RIDGE)
+    held = ridge(matrix)
     seen = np.isfinite(points).all(axis=2)
     enough = seen.mean(axis=1) >= ENOUGH
     wanted = targets(points, neutral, places, method)
@@ -160,16 +166,16 @@ def solve(points, neutral, places, deltas, method, lower=0.0, upper=1.0, strengt
         np.full(len(points), np.nan),
     )
     if method in ("positions", "displacements"):
-        weights[enough], kkt_residual[enough] = _unbounded(matrix, wanted[enough], ridge)
+        weights[enough], kkt_residual[enough] = _unbounded(matrix, wanted[enough], held)
     elif method == "bounded":
-        weights[enough], kkt_residual[enough] = clip_least_squares.solve(
-            matrix, wanted[enough], lower, upper, 0 * strength, ridge, FRAME_TOLERANCE
+        weights[enough], kkt_residual[enough] = frame_least_squares.solve(
+            matrix, wanted[enough], lower, upper, held, FRAME_TOLERANCE
         )
     else:
         smooth = strength * usual * (float(rate) / STRENGTH_RATE) ** 4
         for run in _runs(enough, float(rate)):
             weights[run], kkt_residual[run] = clip_least_squares.solve(
-                matrix, wanted[run], lower, upper, smooth, ridge
+                matrix, wanted[run], lower, upper, smooth, held
             )
         weights[~enough], kkt_residual[~enough] = np.nan, np.nan
     misfit = (weights @ matrix.T - wanted).reshape(points.shape)

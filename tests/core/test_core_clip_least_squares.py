@@ -103,7 +103,7 @@ def test_residual_is_zero_only_at_the_minimum(seed):
     matrix, targets, smooth = problem(seed)
     given_ = clip_window.problem(matrix, 0.0, smooth, np.full(4, -9.0), np.full(4, 9.0))
     none = np.zeros((0, 4))
-    window = clip_window.Window(targets @ matrix, None, none, none)
+    window = clip_window.Window(targets @ matrix, targets @ matrix, None, none, none)
     whole, right = stacked(matrix, targets, smooth, 0.0)
     best = np.linalg.lstsq(whole, right, rcond=None)[0].reshape(12, 4)
     np.testing.assert_allclose(clip_window.gradient(given_, window, best), 0, atol=1e-8)
@@ -121,7 +121,7 @@ def test_what_does_not_fit_is_refused():
     for arguments, message in (
         ((matrix, targets[:, 1:], zero, one, smooth), "do not fit the matrix"),
         ((matrix, targets, zero, one[1:], smooth), "do not fit"),
-        ((matrix, targets, one, zero, smooth), "above its upper"),
+        ((matrix, targets, one, zero, smooth), "above their upper"),
         ((matrix, targets, zero, one, -smooth), "negative"),
     ):
         with pytest.raises(ValueError, match=message):
