@@ -217,7 +217,13 @@ def shown_performance(wildcards):
 
 
 # the files that each name in the column outputs stands for
-OUTPUTS = {"mdd": ["mesh.mdd"], "obj": ["obj"], "usd": ["mesh.usdc", "points.usdc"]}
+OUTPUTS = {
+    "mdd": ["mesh.mdd"],
+    "obj": ["obj"],
+    "openvat": ["texture/openvat/texture.exr"],
+    "texture": ["texture/plain/texture.exr"],
+    "usd": ["mesh.usdc", "points.usdc"],
+}
 
 
 def takes():

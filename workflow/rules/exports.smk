@@ -81,3 +81,38 @@ rule export_obj:
         " --rig {input.rig:q}"
         " --obj-folder {output.obj_folder:q}"
         " 2> {log:q}"
+
+
+rule export_texture:
+    input:
+        exr="results/takes/{shot}/{character}/mesh.exr",
+        json="results/takes/{shot}/{character}/mesh.json",
+        rig=rig_of,
+    output:
+        texture="results/takes/{shot}/{character}/texture/{layout}/texture.exr",
+        normals="results/takes/{shot}/{character}/texture/{layout}/texture_normals.exr",
+        texture_json="results/takes/{shot}/{character}/texture/{layout}/texture.json",
+        texture_mesh="results/takes/{shot}/{character}/texture/{layout}/texture_mesh.obj",
+    log:
+        "logs/export_texture/{shot}/{character}/{layout}.log",
+    benchmark:
+        "logs/export_texture/{shot}/{character}/{layout}.tsv"
+    wildcard_constraints:
+        character=of_kind("mesh"),
+        layout="plain|openvat",
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("export_texture"),
+    shell:
+        "python -m stages.export_texture"
+        " --exr {input.exr:q}"
+        " --json {input.json:q}"
+        " --rig {input.rig:q}"
+        " --layout {wildcards.layout:q}"
+        " --texture {output.texture:q}"
+        " --normals {output.normals:q}"
+        " --texture-json {output.texture_json:q}"
+        " --texture-mesh {output.texture_mesh:q}"
+        " 2> {log:q}"
