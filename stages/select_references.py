@@ -109,11 +109,11 @@ def main(argv: Sequence[str]) -> None:
     rows = [*tuned, *(each.row for each in found)]
     while len(found) < arguments.wanted:
         free = np.flatnonzero(frames.eligible & ~frames.beside(rows))
-        known, all_free = frames.features[rows], np.ones(len(free), bool)
-        chosen = coverage.next_frames(known, frames.features[free], all_free, 1)
-        if not chosen:
+        if len(free) == 0:
             break
-        rows.append(int(free[chosen[0]]))
+        candidates, known = frames.features[free], frames.features[rows]
+        (best,) = coverage.next_frames(known, candidates, np.ones(len(free), bool), 1)
+        rows.append(int(free[best]))
         found.append(reference_frames.Reference(rows[-1], "coverage", ""))
     _write(arguments, frames, tuned, found)
 
