@@ -29,7 +29,8 @@ NOISE_MM = 0.15
 STEP_MM = 0.05
 # the mocap system's axes: x to Mia's left, y behind her, z up; her head sits over its origin
 SEAT = np.array([35.0, -140.0, 1180.0])
-PICTURE = 400
+# other widths than multiples of 32 make x264 forget to be deterministic
+PICTURE = 384
 DOT_MM = 1.6
 CRF, SOUND_BITS = "27", 40000
 # how far a marker may stand behind what is seen there and still be seen [mm]
@@ -177,6 +178,5 @@ def write_all(folder, names=tuple(marker_takes.TAKES)):
         if take.duration_s:
             write_words(here, name, take)
             sound_file.write(here / f"{name}.flac", system_sound(take), spoken.RATE)
-            film.write(
-                here / f"{name}.mp4", _pictures(take, glued, 80 + seed), film_sound(take), CRF
-            )
+            pictures = _pictures(take, glued, 80 + seed)
+            film.write(here / f"{name}.mp4", pictures, film_sound(take), CRF, SOUND_BITS)

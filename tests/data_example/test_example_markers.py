@@ -132,6 +132,7 @@ def test_markers_and_their_sound_begin_before_the_film_and_end_after_it():
         assert picture.codec_context.name == "h264"
         assert container.streams.audio[0].codec_context.name == "aac"
         assert picture.average_rate == 30
+        assert picture.width == picture.height == capture.PICTURE
         count = sum(packet.pts is not None for packet in container.demux(picture))
     assert count == round(marker_takes.FILM_S * 30)
     take = marker_takes.capture()
