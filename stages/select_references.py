@@ -158,8 +158,9 @@ def _write(
     reach = np.full(len(found), np.nan)
     header = {"pairs": sum(map(len, tuned.values())), "uncovered": None}
     if tuned:
-        reach = coverage.leverage(examples, frames.features[rows])
         header["uncovered"] = coverage.uncovered_share(examples, usable)
+    if tuned and found:
+        reach = coverage.leverage(examples, frames.features[rows])
     table = [
         {
             "shot": str(frames.shot[each.row]),
