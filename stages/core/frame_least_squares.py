@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from stages.core import clip_window
+from stages.core import box_least_squares, clip_window
 
 _FRAMES = 256
 
@@ -11,7 +11,8 @@ def solve(matrix, targets, lower, upper, ridge=0.0, tolerance=1e-6):
     """Minimise ``|A w_t - x_t|^2 + ridge |w_t|^2`` subject to ``lower <= w_t <= upper``.
 
     Coordinates that were not observed are left out. Frames with the same coordinates share their
-    factorisation, some hundreds of them are solved together, and each leaves when it is done.
+    factorisation, some hundreds of them are solved together, and each leaves when it is done; the
+    few that do not get there, where shapes nearly depend on one another, are solved exactly.
 
     Parameters
     ----------
@@ -43,4 +44,11 @@ def solve(matrix, targets, lower, upper, ridge=0.0, tolerance=1e-6):
             window = clip_window.Window(right, right, None, none, none)
             weights[rows] = clip_window.solve(given, window, tolerance)
             residual[rows] = clip_window.kkt_residual(given, window, weights[rows])
+            unfinished = np.flatnonzero(residual[rows] > tolerance)
+            for place in unfinished:
+                weights[rows[place]] = box_least_squares.solve_gram(
+                    given.gram, right[place], lower, upper, weights[rows[place]]
+                )
+            if len(unfinished):
+                residual[rows] = clip_window.kkt_residual(given, window, weights[rows])
     return weights, residual
