@@ -61,11 +61,10 @@ class PlayedTake(SmallTake):
         bake_mesh.main([*self.bake_options(), *extra])
         return self
 
-    def positions(self):
+    def positions_without_head(self):
         """Move the vertices by the written formula, in float64 loops over what was put in."""
         ramp = np.clip((self.heights + 0.2) / 0.5, 0, 1)
         masks = {"mouth": 1 - ramp, "eyes": ramp}
-        turns, shift, scale = self.moves
         frames = []
         for frame in range(self.count):
             points = self.neutral.copy()
@@ -73,10 +72,17 @@ class PlayedTake(SmallTake):
                 for name in names:
                     weight = float(self.played[f"{region}.{name}"][frame])
                     points += masks[region][:, None] * weight * self.deltas[region, name]
-            turn = scipy.spatial.transform.Rotation.from_quat(turns[frame]).as_matrix()
+            frames.append(points)
+        return np.array(frames)
+
+    def positions(self):
+        """Move them with the head, too."""
+        frames = []
+        for points, *move in zip(self.positions_without_head(), *self.moves, strict=True):
+            turn = scipy.spatial.transform.Rotation.from_quat(move[0]).as_matrix()
             turn = self.axes @ turn @ self.axes.T
-            move = FACE_UNIT * self.axes @ shift[frame]
-            frames.append(PIVOT + scale[frame] * (points - PIVOT) @ turn.T + move)
+            shift = FACE_UNIT * self.axes @ move[1]
+            frames.append(PIVOT + move[2] * (points - PIVOT) @ turn.T + shift)
         return np.array(frames)
 
     def worst(self, found):
