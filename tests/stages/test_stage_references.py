@@ -96,7 +96,8 @@ def write(actor, *extra, videos=("-", "-")):
     ]
     words += ["--template", str(TEMPLATE), "--page", str(folder / "page.html")]
     write_references.main([*words, "--table", str(folder / "pairs.tsv"), *extra])
-    table = list(csv.DictReader((folder / "pairs.tsv").open(), delimiter="\t"))
+    lines = (folder / "pairs.tsv").read_text().splitlines()
+    table = list(csv.DictReader(lines, delimiter="\t"))
     return (folder / "page.html").read_text(), table
 
 
