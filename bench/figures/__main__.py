@@ -1,4 +1,4 @@
-"""Make the paper's figures on the example show, after its run: `python -m bench.figures`."""
+"""Make the papers' figures on the example show, after its run: `python -m bench.figures`."""
 
 import argparse
 from collections.abc import Sequence
@@ -11,10 +11,12 @@ from bench.figures import (
     key_shape_figure,
     lip_figures,
     lip_trial,
+    marker_figure,
     own_figure,
     portraits,
     region_frames,
     retarget_figure,
+    rig_methods,
 )
 from stages import cli
 from stages.files import errors
@@ -32,7 +34,7 @@ def build_parser() -> argparse.ArgumentParser:
 
 
 def main(argv: Sequence[str]) -> None:
-    """Make figures 4, 5, 6 and 8."""
+    """Make figures 4, 5, 6 and 8 of the first paper, and figure 6 of the second."""
     cv2.setNumThreads(1)
     arguments = build_parser().parse_args(argv)
     show, folder = arguments.show, arguments.figures
@@ -45,6 +47,7 @@ def main(argv: Sequence[str]) -> None:
     key_shape_figure.draw(show, folder / "figure_6.png")
     retarget_figure.draw(show, folder / "figure_8a.png")
     own_figure.draw(show, folder / "figure_8b.png")
+    marker_figure.draw(show, folder / "markers_figure_6.png")
 
 
 def _check_made(show: Path) -> None:
@@ -52,6 +55,8 @@ def _check_made(show: Path) -> None:
     needed = [example.of_actor(show, key_shape_figure.ERRORS)]
     needed += [example.of_shot(show, shot, "key_weights.parquet") for shot in (TAKE, BASIS)]
     needed += [example.of_take(show, TAKE, name, "mesh.json") for name in portraits.CHARACTERS]
+    needed += [example.rig(show, rig_methods.CHARACTER, rig_methods.ACTOR)]
+    needed += [example.of_shot(show, rig_methods.SHOT, "expression.parquet")]
     for path in needed:
         if not path.exists():
             raise errors.InputError(path, "is missing: run the example show first, by `make run`")

@@ -10,6 +10,11 @@ def film(show: Path, shot: str) -> Path:
     return show / "data_example" / "films" / f"{shot}.mp4"
 
 
+def capture_film(show: Path) -> Path:
+    """Return the film of the marker take."""
+    return show / "data_example" / "capture" / "capture.mp4"
+
+
 def truth(show: Path, shot: str) -> Path:
     """Return what the generator knows of a shot."""
     return show / "data_example" / "truth" / f"{shot}.npz"
@@ -30,6 +35,6 @@ def of_take(show: Path, shot: str, character: str, name: str) -> Path:
     return show / "results" / "takes" / shot / character / name
 
 
-def rig(show: Path, character: str) -> Path:
-    """Return the rig of a character."""
-    return show / "results" / "cast" / ACTOR / character / "rig.npz"
+def rig(show: Path, character: str, actor: str = ACTOR) -> Path:
+    """Return the rig of a character, as an actor plays it."""
+    return show / "results" / "cast" / actor / character / "rig.npz"

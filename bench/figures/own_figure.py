@@ -32,7 +32,7 @@ def draw(show: Path, path: Path) -> None:
         chosen, weights = sequence.chosen[own_key_shapes.OWN], solved[own_key_shapes.OWN][0]
         at = np.searchsorted(sequence.frame, frames)
         shapes = own_key_shapes.play(character, chosen, weights, 0)[at]
-        moved = with_head(show, character.rig, shapes, frames)
+        moved = with_head(show, shot, character.rig, shapes, frames)
         rows.append(portraits.character_pictures(character.rig, moved))
         curves[name] = {
             which: own_key_shapes.target_error(character, sequence.chosen[which], solution[0])
@@ -47,9 +47,11 @@ def draw(show: Path, path: Path) -> None:
     look.save(whole, path)
 
 
-def with_head(show: Path, character, shapes: np.ndarray, frames: list[int]) -> np.ndarray:
-    """Move shapes (N, V, 3) of a character with the head of the sequence's frames."""
-    path = example.of_shot(show, own_key_shapes.SHOT, "head_motion.parquet")
+def with_head(
+    show: Path, shot: str, character, shapes: np.ndarray, frames: list[int]
+) -> np.ndarray:
+    """Move shapes (N, V, 3) of a character with the head of a shot's frames."""
+    path = example.of_shot(show, shot, "head_motion.parquet")
     motion = series.read(path, "head_motion")
     rows = np.searchsorted(motion.frame, frames)
     turns, shifts, (scale,) = (

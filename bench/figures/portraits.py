@@ -13,24 +13,29 @@ COLUMNS = 6
 CHARACTERS = ("human", "radio", "drawing")
 
 
-def character_pictures(character: rig.Rig, positions: np.ndarray) -> list[np.ndarray]:
-    """Draw positions of a character from one camera that sees them all.
+def character_pictures(
+    character: rig.Rig, positions: np.ndarray, framed: np.ndarray | None = None
+) -> list[np.ndarray]:
+    """Draw positions of a character from one camera that sees them all, or others.
 
     Parameters
     ----------
     character : rig.Rig
     positions : (N, V, 3) float array [character's unit]
+    framed : (M, V, 3) float array [character's unit], optional
+        What the camera sees the whole of, in place of the positions.
 
     Returns
     -------
     list of (SIDE, SIDE, 3) uint8 arrays
     """
+    seen = positions if framed is None else framed
     paint = portrait.painter(
         character.neutral,
         polygons.triangulate(character.sizes, character.corners),
         character.colours,
         head_transform.face_axes(character.up_axis),
-        (positions.min(axis=(0, 1)), positions.max(axis=(0, 1))),
+        (seen.min(axis=(0, 1)), seen.max(axis=(0, 1))),
         SIDE,
     )
     return [paint(shape) for shape in positions]
@@ -98,7 +103,7 @@ def farthest(features, frame, count):
     return picked
 
 
-def sheet(drawn, rows, names, frames, height):
+def sheet(drawn, rows, names, titles, height):
     """Place rows of pictures, with their names at the left and frame numbers above.
 
     Parameters
@@ -107,13 +112,13 @@ def sheet(drawn, rows, names, frames, height):
     rows : list of lists of (H, W, 3) uint8 arrays
     names : list of str
         One of each row.
-    frames : list of int
-        One of each column.
+    titles : list
+        What stands above each column, a frame's number to begin with.
     height : float
         Share of the height, from the top, that the rows take.
     """
     left, top, gap = 0.022, 0.025 * height, 0.003
-    wide = (1 - left - gap) / len(frames)
+    wide = (1 - left - gap) / len(titles)
     tall = (height - top) / len(rows)
     for number, (pictures, name) in enumerate(zip(rows, names, strict=True)):
         bottom = 1 - top - (number + 1) * tall
@@ -124,7 +129,7 @@ def sheet(drawn, rows, names, frames, height):
             panel = drawn.add_axes(place)
             panel.imshow(picture, interpolation="antialiased")
             panel.set_axis_off()
-    for column, frame in enumerate(frames):
+    for column, title in enumerate(titles):
         middle = left + (column + 0.5) * wide - gap / 2
         words = {"ha": "center", "va": "center", "size": 9, "color": look.INK}
-        drawn.text(middle, 1 - top / 2, f"frame {frame}", **words)
+        drawn.text(middle, 1 - top / 2, f"frame {title}", **words)
