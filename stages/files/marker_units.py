@@ -44,8 +44,8 @@ def millimetres(path: str | Path, wanted: str, stated: str) -> float:
         return factor
     if stated.strip().lower() not in MILLIMETRES:
         what = f"states the unit '{stated}', which is unknown" if stated else "states no unit"
-        message = f"{what}: set its unit to {', '.join(UNITS)}, or to the mm of one unit (--unit)"
-        raise errors.InputError(path, message)
+        cure = f"write {', '.join(UNITS)}, or the mm of one unit, into marker_unit in sessions.tsv"
+        raise errors.InputError(path, f"{what}: {cure}")
     return MILLIMETRES[stated.strip().lower()]
 
 
@@ -105,14 +105,20 @@ def rate(path: str | Path, take: marker_take.MarkerTake, wanted: str) -> Fractio
         given = _given(wanted)
         judges = {k: v for k, v in stated.items() if k == BY_TIMES} or stated
         if judges and not any(abs(float(given) / value - 1) <= slack for value in judges.values()):
-            message = f"is of {_listed(judges)}, not of {wanted} Hz (--rate): leave the rate blank"
+            message = (
+                f"is of {_listed(judges)}, not of {wanted} Hz: clear source_rate in sessions.tsv"
+            )
             raise errors.InputError(path, message)
         return given
     if not stated:
-        raise errors.InputError(path, "states no rate and no times: give its rate (--rate)")
+        raise errors.InputError(
+            path, "states no rate and no times: give source_rate in sessions.tsv"
+        )
     first = next(iter(stated.values()))
     if any(abs(value / first - 1) > slack for value in stated.values()):
-        message = f"contradicts itself, {_listed(stated)}: give its true rate (--rate)"
+        message = (
+            f"contradicts itself, {_listed(stated)}: give the true source_rate in sessions.tsv"
+        )
         raise errors.InputError(path, message)
     return rational(first, slack if BY_TIMES in stated and len(stated) == 1 else SAME_RATE)
 
