@@ -10,6 +10,7 @@ import numpy as np
 from stages.files import errors
 
 GAPS = frozenset(("", "na", "nan", "n/a", "null", "none", "-", "--"))
+LARGEST = 1e30  # what float32 holds, with room for units
 SHORTEST_S = 1e-6
 TIME_SLACK = 0.25  # of a frame's length, of a single row
 
@@ -117,12 +118,13 @@ def _numbers(
     for column in columns:
         text = cells[column] if decimal == "." else cells[column].replace(decimal, ".")
         try:
-            row.append(float(text))
+            value = float(text)
         except ValueError:
-            if text.lower() not in GAPS:
-                message = f"line {line}, column {header[column]}: '{cells[column]}' is no number"
-                raise errors.InputError(path, message + ": leave it blank for a gap") from None
-            row.append(np.nan)
+            value = np.nan if text.lower() in GAPS else np.inf
+        if abs(value) > LARGEST:
+            message = f"line {line}, column {header[column]}: '{cells[column]}' is no number"
+            raise errors.InputError(path, message + ": leave it blank for a gap")
+        row.append(value)
     return row
 
 

@@ -236,6 +236,8 @@ HEADER = "frame,a_x,a_y,a_z\n"
         (HEADER, "holds no row of numbers"),
         (HEADER + "1,2,3,4\n2,2,3\n", "line 3 has 3 cells, the header has 4: is it cut short"),
         (HEADER + "1,2,three,4\n", "line 2, column a_y: 'three' is no number"),
+        (HEADER + "1,2,inf,4\n", "line 2, column a_y: 'inf' is no number"),
+        (HEADER + "1,2,3,-1e39\n", "line 2, column a_z: '-1e39' is no number"),
         (HEADER + "1,2,3,4\n,2,3,4\n", "line 3 lacks its frame"),
         (HEADER + "1,2,3,4\n1,2,3,4\n", "line 3: its frame number does not follow"),
         (HEADER + "1,2,3,4\n90000000,2,3,4\n", "2 rows stand for 90000000 frames"),
