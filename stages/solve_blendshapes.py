@@ -69,6 +69,8 @@ def main(argv: Sequence[str]) -> None:
     columns["residual"] = solution.residual
     columns["kkt_residual"] = solution.kkt_residual
     columns["confidence"] = np.where(solved, driving.confidence, 0.0)
+    sources = [options.expression, options.rig, options.virtual_markers]
+    sources += [options.channels] if options.channels else []
     series.write(
         options.solved,
         "solved",
@@ -77,7 +79,7 @@ def main(argv: Sequence[str]) -> None:
         columns,
         driving.rate,
         {"residual_unit": "face units", "solve": options.solve},
-        [options.expression, options.rig, options.virtual_markers],
+        sources,
     )
 
 
