@@ -45,9 +45,7 @@ def main(argv: Sequence[str]) -> None:
     weights = curve_mapping.apply(values, sources)
     columns = dict(zip(names, weights.T, strict=True))
     columns["confidence"] = curves.columns["confidence"]
-    kept = {
-        name: curves.meta[name] for name in ("start_timecode", "start_s") if name in curves.meta
-    }
+    kept = {name: curves.meta[name] for name in START if name in curves.meta}
     series.write(
         arguments.mapped,
         "mapped",
