@@ -105,7 +105,11 @@ def main(argv: Sequence[str]) -> None:
     arguments = build_parser().parse_args(argv)
     frames = _Frames(arguments)
     tuned = _tuned(arguments, frames)
-    found = _scheme(arguments, frames)[: arguments.wanted]
+    scheme = _scheme(arguments, frames)
+    found = scheme[: arguments.wanted]
+    if len(scheme) > len(found):
+        message = "%d of the %d frames for visemes and extremes are left out: raise references"
+        cli.logger.warning(message, len(scheme) - len(found), len(scheme))
     rows = [*tuned, *(each.row for each in found)]
     while len(found) < arguments.wanted:
         free = np.flatnonzero(frames.eligible & ~frames.beside(rows))

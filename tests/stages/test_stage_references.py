@@ -51,6 +51,12 @@ def test_a_viseme_is_the_middle_of_one_of_its_phones_and_extremes_follow(actor):
     assert len({(row["shot"], row["frame"]) for row in rows}) == 16
 
 
+def test_frames_of_the_scheme_that_find_no_room_are_said(actor, caplog):
+    rows, _ = select(actor, *spoken(actor), pairs=(), wanted=8, emotions=["calm", "angry"])
+    assert len(rows) == 8
+    assert "14 of the 22 frames for visemes and extremes are left out" in caplog.text
+
+
 def test_pairs_are_counted_and_what_they_reach_is_told(actor):
     rows, header = select(actor, pairs=())
     assert header["pairs"] == 0
