@@ -49,6 +49,8 @@ def main(argv: Sequence[str]) -> None:
         raise errors.InputError(
             options.expression, f"{message} are missing, the first is {unknown[0]}: {cure}"
         )
+    if unknown:
+        cli.logger.info("estimated, the shot lacks them: %s", ", ".join(unknown))
     limits = channels.read(options.channels, shapes, 0.0, 1.0)
     weights, distance, observed = _predict(learnt, driving, limits)
     columns = dict(zip(shapes, weights, strict=True))
