@@ -100,7 +100,8 @@ def pair_films(wildcards):
 def pair_phone_shots(wildcards):
     """Return the names of these shots whose phones are given or can be found."""
     rows = shots_of(wildcards.actor, points_of(wildcards), ["yes"])
-    return [row["shot"] for row in rows if row["phones"] or row["transcript"]]
+    known = ("phones", "transcript", "words")
+    return [row["shot"] for row in rows if any(row[column] for column in known)]
 
 
 def pair_phones(wildcards):
@@ -108,13 +109,23 @@ def pair_phones(wildcards):
     return expand("results/shots/{shot}/phones.parquet", shot=pair_phone_shots(wildcards))
 
 
-def pair_count(wildcards):
-    """Return how many pairs of these shots there are; what is wrong with them is said later."""
-    shots, count = pair_shots(wildcards), 0
+def shots_of_pairs(wildcards):
+    """Return the shot of every pair in these tables; what is wrong with them is said later."""
+    found = []
     for path in pair_tables(wildcards):
         lines = Path(path).read_text(encoding="utf-8-sig", errors="replace").splitlines()
-        count += sum(re.split("[\t,]", line)[0].strip() in shots for line in lines)
-    return count
+        header, *rows = [
+            [cell.strip() for cell in re.split("[\t,]", line)] for line in lines or [""]
+        ]
+        place = header.index("shot") if "shot" in header else 0
+        found += [row[place] for row in rows if len(row) > place]
+    return found
+
+
+def pair_count(wildcards):
+    """Return how many pairs of the actor's basis shots there are."""
+    shots = pair_shots(wildcards)
+    return sum(name in shots for name in shots_of_pairs(wildcards))
 
 
 def pair_starts(wildcards):
@@ -142,7 +153,10 @@ def mapped_pair_shots(wildcards):
 
 
 def other_pair_shots(wildcards):
-    """Return the shots that pairs in the character's folder may name for other actors or points."""
+    """Return the shots that pairs of this character name for other actors or points.
+
+    Only those that are named: another actor's new shot must not train this one's pairs again.
+    """
     own = cells(
         [row for row in SHOW["shots"] if row.cells["session"] in sessions_of(wildcards.actor)],
         "shot",
@@ -153,8 +167,9 @@ def other_pair_shots(wildcards):
         for points in ("video", "markers")
         for row in shots_of(wildcards.actor, points, ["yes"])
     ]
-    used = pair_shots(wildcards)
-    return others + [name for name in dict.fromkeys(kinds) if name not in used]
+    used, named = pair_shots(wildcards), shots_of_pairs(wildcards)
+    allowed = dict.fromkeys(others + [name for name in kinds if name not in used])
+    return [name for name in allowed if name in named]
 
 
 def regression_of(wildcards):
