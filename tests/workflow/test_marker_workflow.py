@@ -121,6 +121,17 @@ def test_the_sound_of_another_take_is_refused_and_a_cell_cures_it(show):
         np.testing.assert_allclose(given.columns[name], measured.columns[name], atol=0.1)
 
 
+def test_a_shot_of_another_actor_trains_nobody_again(show):
+    edit(
+        show.folder / "config/shots.tsv",
+        "phone\ts2",
+        "again\ts2\t\t\t\t\tfootage/phone.csv\t\nphone\ts2",
+    )
+    planned = show.would_run()
+    assert planned["import_curves"] == 1
+    assert not {"train_rbf", "select_references", "predict_weights"} & set(planned)
+
+
 SENSELESS = [
     (
         "characters",
@@ -133,6 +144,18 @@ SENSELESS = [
         "\tfootage/a.wav",
         "\t",
         r"config/shots\.tsv: line 2, column sound: film and markers share no clock",
+    ),
+    (
+        "shots",
+        "footage/a.csv\tfootage/a.wav",
+        "\tfootage/a.wav",
+        r"config/shots\.tsv: line 2, column sound: is the marker system's, yet the film has no",
+    ),
+    (
+        "sessions",
+        "eve\ta\t",
+        "eve\tphone\t",
+        r"config/sessions\.tsv: line 2, column neutral_shot: 'phone' shows lea, not eve",
     ),
     (
         "sessions",
@@ -166,7 +189,7 @@ def test_tables_that_make_no_sense_stop_before_any_job(show, table, old, new, pa
 
 
 def test_a_pair_of_an_unknown_shot_is_named(show):
-    edit(show.folder / "plate/pairs/ann.tsv", "\na\t34", "\nz\t34")
+    edit(show.folder / "plate/pairs/ann.tsv", "\na\t33\t", "\nz\t33\t")
     assert show.snakemake("results/cast/eve/tuned/rbf.npz").returncode == 1
     log = (show.folder / "logs/train_rbf/eve/tuned.log").read_text()
     assert re.fullmatch(r"error: plate/pairs/ann\.tsv: line 3, column shot: .*'z'.*\n", log), log

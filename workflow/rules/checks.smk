@@ -66,8 +66,12 @@ def check_shot(row):
     for column, needed in (("labels", "video"), ("sync_offset_s", "markers")):
         if shot[column] and not shot[needed]:
             refuse("shots", row, column, f"is of no use without {needed}; clear it")
-    if shot["transcript"] and not (shot["video"] or shot["sound"]):
-        refuse("shots", row, "transcript", "has no sound to be found in; give sound or video")
+    for column in ("transcript", "words"):
+        if shot[column] and not (shot["video"] or shot["sound"]):
+            refuse("shots", row, column, "has no sound to be found in; give sound or video")
+    if shot["sound"] and shot["video"] and not shot["markers"]:
+        message = "is the marker system's, yet the film has no markers beside it; clear the cell"
+        refuse("shots", row, "sound", message)
     if shot["markers"] and shot["video"] and not (shot["sound"] or shot["sync_offset_s"]):
         message = (
             "film and markers share no clock; give the marker system's sound, or sync_offset_s"
@@ -82,6 +86,10 @@ def check_session(tables, row):
         other.cells for other in tables["shots"] if other.cells["session"] == session["session"]
     ]
     neutral = row_of(tables["shots"], "shot", session["neutral_shot"])
+    whose = row_of(tables["sessions"], "session", neutral["session"])["actor"]
+    if whose != session["actor"]:
+        message = f"'{neutral['shot']}' shows {whose}, not {session['actor']}"
+        refuse("sessions", row, "neutral_shot", message + "; choose a shot of the same actor")
     for points in ("video", "markers"):
         if any(has_points(tables, shot, points) for shot in shots):
             if not has_points(tables, neutral, points):
