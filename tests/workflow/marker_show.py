@@ -12,11 +12,11 @@ import cv2
 import numpy as np
 import tiny_show
 
-RATE, FILM_RATE, SOUND_RATE = 120, 25, 16000
+RATE, FILM_RATE, SOUND_RATE = 120, 15, 16000
 AHEAD_S = 0.4
 FILM_S, LENGTH_S = 3.0, {"a": 4.0, "b": 1.5}  # of the film, of the markers
 SHAPES = ("browInnerUp", "jawOpen", "mouthSmileLeft")
-TUNED = tuple(range(2, 356, 32))  # frames of `a`, from the film's first picture
+TUNED = tuple(range(2, 350, 31))  # frames of `a`, from the film's first picture
 MM = 30.0  # of the actor's face where the plate has 1
 COLUMNS, ROWS = 5, 6
 WITH_MARKERS = [v for v in range(COLUMNS * ROWS) if v % ROWS not in (1, 5)]
