@@ -25,7 +25,7 @@ import numpy as np
 
 from stages import cli
 from stages.core import kept_moments, motion_filter, resample
-from stages.files import channels, errors, lip_gap, rig, series, weights
+from stages.files import channels, errors, lip_gap, rate_text, rig, series, weights
 
 HEAD_ROTATION = [f"rotation.{axis}" for axis in "xyzw"]
 HEAD_REST = [f"translation.{axis}" for axis in "xyz"] + ["scale"]
@@ -75,19 +75,6 @@ def build_parser() -> argparse.ArgumentParser:
     parser.add_argument("--weights", required=True, help="weights.parquet to write")
     parser.add_argument("--csv", required=True, help="weights.csv to write")
     return parser
-
-
-def _rate(text: str, source: Fraction) -> Fraction:
-    """Return the rate to bake at."""
-    if text in ("", FILM):
-        return source
-    try:
-        rate = Fraction(text)
-    except (ValueError, ZeroDivisionError):
-        rate = Fraction(0)
-    if rate <= 0:
-        raise errors.InputError("--rate", f"'{text}' is no rate such as 30 or 30000/1001")
-    return rate
 
 
 def _columns(read: series.Series, path: str, names: list[str]) -> np.ndarray:
@@ -161,7 +148,7 @@ def main(argv: Sequence[str]) -> None:
     observed = np.isfinite(values).all(axis=1) & head_seen
     filled = _filled(options.solution, values)
     filled[~observed, -1] = 0.0
-    rate = _rate(options.rate, solved.rate)
+    rate = rate_text.read("--rate", options.rate.removesuffix(FILM)) or solved.rate
     scaled = asked.gain * filled[:, :-1]
     # an addition of zero would lose the sign of a zero
     adjusted = np.where(asked.offset == 0.0, scaled, scaled + asked.offset)
