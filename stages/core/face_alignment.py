@@ -4,10 +4,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stages.core import rigid_motion
+
 SAMPLE = 600
 ROUNDS = 5
 REWEIGHTINGS = 4
-MINIMUM = 3
 STIFF_MM = 0.3
 TOLERATED = 3.0
 PART = 4096
@@ -45,7 +46,7 @@ def align(points: np.ndarray) -> Motion:
     Raises
     ------
     ValueError
-        if no frame holds three markers
+        if no frame holds four markers
     """
     face, spread = _median_face(points)
     rotation = np.empty((len(points), 3, 3))
@@ -59,8 +60,7 @@ def align(points: np.ndarray) -> Motion:
 
 def to_face(points: np.ndarray, motion: Motion) -> np.ndarray:
     """Return points (T, P, 3) in the head's frame, of the same type."""
-    moved = points - motion.translation[:, None].astype(points.dtype)
-    return moved @ motion.rotation.astype(points.dtype)
+    return rigid_motion.remove(points, motion.rotation, motion.translation)
 
 
 def from_face(points: np.ndarray, motion: Motion) -> np.ndarray:
@@ -73,9 +73,10 @@ def _median_face(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the median of aligned frames (P, 3) and each marker's distance from it (P,)."""
     seen = np.isfinite(points[..., 0])
     counts = seen.sum(axis=1)
-    if counts.max(initial=0) < MINIMUM:
-        raise ValueError(f"no frame of {points.shape} holds {MINIMUM} points: nothing to align")
-    usable = np.flatnonzero(counts >= MINIMUM)
+    least = rigid_motion.MIN_POINTS
+    if counts.max(initial=0) < least:
+        raise ValueError(f"no frame of {points.shape} holds {least} points: nothing to align")
+    usable = np.flatnonzero(counts >= least)
     chosen = usable[np.linspace(0, len(usable) - 1, min(SAMPLE, len(usable))).astype(int)]
     first = chosen[counts[chosen].argmax()]
     sample, face = points[chosen].astype(float), points[first].astype(float)
@@ -97,30 +98,12 @@ def _robust_fit(
     points: np.ndarray, face: np.ndarray, spread: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return rotations and translations that bring a face (P, 3) to frames (T, P, 3)."""
-    seen = np.isfinite(points[..., 0]) & np.isfinite(face[:, 0])
-    start = seen / spread**2
-    weights = start
-    at, onto = np.where(seen[..., None], points, 0), np.where(np.isfinite(face), face, 0)
-    for _ in range(REWEIGHTINGS):
-        rotation, translation = _fit(at, onto, weights)
-        residual = np.linalg.norm((at - translation[:, None]) @ rotation - onto, axis=2)
-        weights = start / (1 + (residual / (TOLERATED * spread)) ** 2) ** 2
-    few = seen.sum(axis=1) < MINIMUM
-    rotation[few], translation[few] = np.nan, np.nan
-    return rotation, translation
-
-
-def _fit(at: np.ndarray, onto: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the proper rotations and translations that minimise the weighted squares."""
-    total = np.maximum(weights.sum(axis=1), np.finfo(float).tiny)
-    share = weights / total[:, None]
-    to_mean = np.einsum("tp,tpd->td", share, at)
-    from_mean = share @ onto
-    # R maximises trace(R^T M), M = sum_p w (x - mean)(m - mean)^T
-    moment = np.einsum("tpi,pj->tij", share[..., None] * at, onto)
-    moment -= to_mean[:, :, None] * from_mean[:, None, :]
-    left, _, right = np.linalg.svd(moment)
-    sign = np.sign(np.linalg.det(left @ right))
-    left[:, :, 2] *= np.where(sign == 0, 1, sign)[:, None]
-    rotation = left @ right
-    return rotation, to_mean - (rotation @ from_mean[:, :, None])[..., 0]
+    known = np.isfinite(face[:, 0])
+    onto = np.where(known[:, None], face, 0)
+    start = known / spread**2
+    motion = rigid_motion.fit(points, onto, start)
+    for _ in range(REWEIGHTINGS - 1):
+        squares = np.nan_to_num(rigid_motion.squared_residuals(points, onto, *motion))
+        weights = start / (1 + squares / (TOLERATED * spread) ** 2) ** 2
+        motion = rigid_motion.fit(points, onto, weights)
+    return motion

@@ -35,13 +35,13 @@ def test_the_heads_motion_is_found_in_spite_of_faults_and_gaps():
     np.testing.assert_allclose(back, take, atol=1e-9)
 
 
-def test_a_frame_with_two_markers_has_no_motion_and_too_few_are_refused():
+def test_a_frame_with_three_markers_has_no_motion_and_too_few_are_refused():
     _, take = marker_face.take(count=50)
-    take[20, 2:] = np.nan
+    take[20, 3:] = np.nan
     motion = face_alignment.align(take)
     assert np.isnan(motion.rotation[20]).all()
     assert np.isfinite(np.delete(motion.rotation, 20, axis=0)).all()
-    with pytest.raises(ValueError, match=r"no frame of \(50, 2, 3\) holds 3 points"):
+    with pytest.raises(ValueError, match=r"no frame of \(50, 2, 3\) holds 4 points"):
         face_alignment.align(take[:, :2])
 
 
