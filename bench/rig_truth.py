@@ -16,7 +16,6 @@ from stages.files import rig, series
 
 TAKES = (
     ("capture", "mia", "clay", "predicted"),
-    ("capture", "mia", "clay", "solved"),
     ("line", "mia", "clay", "predicted"),
     ("line", "mia", "clay_equation", "solved"),
 )

@@ -233,6 +233,7 @@ def shown_performance(wildcards):
 
 # the files that each name in the column outputs stands for
 OUTPUTS = {
+    "blender": ["blender.py"],
     "mdd": ["mesh.mdd"],
     "obj": ["obj"],
     "openvat": ["texture/openvat/texture.exr"],

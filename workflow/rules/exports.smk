@@ -116,3 +116,28 @@ rule export_texture:
         " --texture-json {output.texture_json:q}"
         " --texture-mesh {output.texture_mesh:q}"
         " 2> {log:q}"
+
+
+rule export_blender:
+    input:
+        rig=rig_of,
+        weights="results/takes/{shot}/{character}/weights.parquet",
+    output:
+        script="results/takes/{shot}/{character}/blender.py",
+    log:
+        "logs/export_blender/{shot}/{character}.log",
+    benchmark:
+        "logs/export_blender/{shot}/{character}.tsv"
+    wildcard_constraints:
+        character=of_kind("mesh"),
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("export_blender"),
+    shell:
+        "python -m stages.export_blender"
+        " --rig {input.rig:q}"
+        " --weights {input.weights:q}"
+        " --script {output.script:q}"
+        " 2> {log:q}"
