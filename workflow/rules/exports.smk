@@ -122,6 +122,7 @@ rule export_blender:
     input:
         rig=rig_of,
         weights="results/takes/{shot}/{character}/weights.parquet",
+        template=template("apply_in_blender.py"),
     output:
         script="results/takes/{shot}/{character}/blender.py",
     log:
@@ -139,5 +140,6 @@ rule export_blender:
         "python -m stages.export_blender"
         " --rig {input.rig:q}"
         " --weights {input.weights:q}"
+        " --template {input.template:q}"
         " --script {output.script:q}"
         " 2> {log:q}"
