@@ -3,6 +3,7 @@
 import io
 import json
 import zipfile
+import zlib
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -10,6 +11,8 @@ import numpy as np
 
 from stages.files import atomic, errors, provenance
 
+# what a damaged archive may end in
+FAULTS = (ValueError, RuntimeError, OSError, zipfile.BadZipFile, zlib.error, EOFError)
 EPOCH = (1980, 1, 1, 0, 0, 0)
 
 
@@ -53,7 +56,9 @@ def read(path: str | Path, kind: str) -> tuple[dict[str, np.ndarray], dict]:
     try:
         with np.load(path, allow_pickle=False) as archive:
             arrays = {name: archive[name] for name in archive.files}
-    except (ValueError, zipfile.BadZipFile, EOFError) as error:
+    except FAULTS as error:
+        if isinstance(error, OSError) and error.filename is not None:
+            raise  # it is not there, or may not be read
         message = f"no model file ({error}): delete it and run again"
         raise errors.InputError(path, message) from error
     meta = json.loads(str(arrays.pop("meta", "{}")))

@@ -89,8 +89,17 @@ def read(path: str | Path, form: str) -> Rig:
 
 
 def read_any(path: str | Path) -> Rig:
-    """Read a rig of either form."""
+    """Read a rig of either form.
+
+    Raises
+    ------
+    errors.InputError
+        if the file is no rig, or one of another version
+    """
     arrays, header = model.read(path, KIND)
+    for name in (*ARRAYS, *SHAPES, *HEADER):
+        if name not in (header if name in HEADER else arrays):
+            raise errors.InputError(path, f"holds no {name}: delete it and run again")
     deltas = local_shapes.LocalShapes(*(arrays[n] for n in SHAPES), len(arrays["neutral"]))
     fields = {n: arrays[n] for n in ARRAYS} | {n: header[n] for n in HEADER}
     return Rig(deltas=deltas, **fields)
