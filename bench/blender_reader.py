@@ -47,7 +47,7 @@ def play(mesh, frames):
     """Return the coordinates at every frame (T, V, 3)."""
     found = []
     for frame in frames:
-        bpy.context.scene.frame_set(frame)
+        bpy.context.scene.frame_set(int(frame), subframe=frame - int(frame))
         found.append(coordinates(mesh))
     return np.array(found)
 
@@ -59,10 +59,9 @@ def seconds(frames):
 
 
 def keyed():
-    """Return the first and the last key of all animation in the file."""
-    ranges = [action.frame_range for action in bpy.data.actions]
-    first, last = min(low for low, _ in ranges), max(high for _, high in ranges)
-    return range(round(first), round(last) + 1)
+    """Return the places of the keys of all animation in the file, in frames."""
+    curves = [curve for action in bpy.data.actions for curve in action.fcurves]
+    return sorted({point.co[0] for curve in curves for point in curve.keyframe_points})
 
 
 def upright(character):
@@ -71,7 +70,12 @@ def upright(character):
 
 
 def glb(folder, character):
-    """Import the glTF."""
+    """Import the glTF.
+
+    Blender's importer takes the scene's rate for a whole one: at 24000/1001 its keys would stand
+    beside the frames. So the scene plays at the whole rate, and times are those of its keys.
+    """
+    bpy.context.scene.render.fps_base = 1.0
     bpy.ops.import_scene.gltf(filepath=str(folder / "mesh.glb"))
     frames = keyed()
     return frames, play(the_mesh(), frames) @ upright(character).T
