@@ -234,6 +234,8 @@ def shown_performance(wildcards):
 # the files that each name in the column outputs stands for
 OUTPUTS = {
     "blender": ["blender.py"],
+    "livelink": ["livelink.csv"],
+    "maya": ["maya.py", "maya.anim"],
     "mdd": ["mesh.mdd"],
     "obj": ["obj"],
     "openvat": ["texture/openvat/texture.exr"],

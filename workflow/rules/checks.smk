@@ -103,6 +103,8 @@ def check_session(tables, row):
 def check_character(row):
     """Refuse a character without the file that its method needs."""
     needed = {"key_shapes": "masks", "blendshapes": "virtual_markers"}
+    if row.cells["method"] == "key_shapes" and "livelink" in show.listed(row.cells["outputs"]):
+        refuse("characters", row, "outputs", "livelink needs a rig of named shapes; remove it")
     column = needed.get(row.cells["method"])
     if row.cells["outputs"] and row.cells["neutral"].endswith(".csv"):
         refuse("characters", row, "outputs", "a table of controls has no mesh; clear the cell")

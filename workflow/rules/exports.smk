@@ -143,3 +143,59 @@ rule export_blender:
         " --template {input.template:q}"
         " --script {output.script:q}"
         " 2> {log:q}"
+
+
+rule export_livelink:
+    input:
+        rig=rig_of,
+        weights="results/takes/{shot}/{character}/weights.parquet",
+        names=data_table("shape_names.tsv"),
+    output:
+        livelink="results/takes/{shot}/{character}/livelink.csv",
+    log:
+        "logs/export_livelink/{shot}/{character}.log",
+    benchmark:
+        "logs/export_livelink/{shot}/{character}.tsv"
+    wildcard_constraints:
+        character=of_method("rbf", "blendshapes"),
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("export_livelink"),
+    shell:
+        "python -m stages.export_livelink"
+        " --rig {input.rig:q}"
+        " --weights {input.weights:q}"
+        " --names {input.names:q}"
+        " --livelink {output.livelink:q}"
+        " 2> {log:q}"
+
+
+rule export_maya:
+    input:
+        rig=rig_of,
+        weights="results/takes/{shot}/{character}/weights.parquet",
+        template=template("apply_in_maya.py"),
+    output:
+        script="results/takes/{shot}/{character}/maya.py",
+        anim="results/takes/{shot}/{character}/maya.anim",
+    log:
+        "logs/export_maya/{shot}/{character}.log",
+    benchmark:
+        "logs/export_maya/{shot}/{character}.tsv"
+    wildcard_constraints:
+        character=of_kind("mesh"),
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("export_maya"),
+    shell:
+        "python -m stages.export_maya"
+        " --rig {input.rig:q}"
+        " --weights {input.weights:q}"
+        " --template {input.template:q}"
+        " --script {output.script:q}"
+        " --anim {output.anim:q}"
+        " 2> {log:q}"
