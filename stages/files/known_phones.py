@@ -44,6 +44,7 @@ def read(path: str | Path, table: dict[str, str]) -> list[phones.Phone]:
 def _has_mouth_cues(path: str | Path) -> bool:
     """Return whether a JSON file is Rhubarb's; what is no JSON is said to be no TextGrid."""
     try:
-        return "mouthCues" in json.loads(text_file.read(path))
+        found = json.loads(text_file.read(path))
     except json.JSONDecodeError:
         return False
+    return isinstance(found, dict) and "mouthCues" in found
