@@ -100,12 +100,6 @@ def names_of(table: Sequence[Shape], spelling: str) -> list[str]:
     ]
 
 
-def canonical(table: Sequence[Shape], spelling: str) -> str | None:
-    """Return the canonical name of a spelling; None if it is unknown or stands for several."""
-    found = names_of(table, spelling)
-    return found[0] if len(found) == 1 else None
-
-
 def spelt(shape: Shape, available: Collection[str]) -> list[str]:
     """Return the shapes of a rig that stand for a canonical one: several where it is split.
 
