@@ -48,7 +48,7 @@ def read(path: str | Path, table: Sequence[shape_names.Shape]) -> curve_take.Cur
         if not key and isinstance(value, str):
             names.append(value)
         elif key:
-            about[_plain(key)] = value
+            about[json_stream.plain(key)] = value
         else:
             frames.append(value)
     listed = next((about[key] for key in NAMES if isinstance(about.get(key), list)), names)
@@ -73,11 +73,6 @@ def read(path: str | Path, table: Sequence[shape_names.Shape]) -> curve_take.Cur
     )
 
 
-def _plain(key: str) -> str:
-    """Return a key without case and underscores."""
-    return key.replace("_", "").lower()
-
-
 def _keys(value: Any) -> tuple[float | None, float | None, float | None]:
     """Return a frame's number, its time, and the time's unit [s] if it is stated."""
     number = time = unit_s = None
@@ -87,7 +82,7 @@ def _keys(value: Any) -> tuple[float | None, float | None, float | None]:
             continue
         if is_time and time is None:
             time, unit_s = float(one), unit
-        elif _plain(key) in map(_plain, NUMBER) and number is None:
+        elif json_stream.plain(key) in map(json_stream.plain, NUMBER) and number is None:
             number = float(one)
     return number, time, unit_s
 
@@ -101,28 +96,30 @@ def _weights(value: Any, names: Sequence[str]) -> dict[str, float]:
             if len(value) != len(names):
                 raise ValueError(f"has {len(value)} weights for {len(names)} names: correct them")
             return dict(zip(names, map(float, value), strict=True))
-        if isinstance(value[0], dict) and {_plain(key) for key in value[0]} & set(CATEGORY):
+        if isinstance(value[0], dict) and {json_stream.plain(key) for key in value[0]} & set(
+            CATEGORY
+        ):
             return dict(map(_category, value))
         if len(value) > 1:
             raise ValueError(f"has {len(value)} faces: keep one")
         return _weights(value[0], names)
-    plain = {_plain(key): one for key, one in value.items()}
+    plain = {json_stream.plain(key): one for key, one in value.items()}
     for key in WEIGHTS:
         if isinstance(plain.get(key), list | dict):
             return _weights(plain[key], names)
-    others = {_plain(key) for key in NUMBER}
+    others = {json_stream.plain(key) for key in NUMBER}
     return {
         key: float(one)
         for key, one in value.items()
         if isinstance(one, int | float)
         and not headed_text.time_unit(key)[0]
-        and _plain(key) not in others
+        and json_stream.plain(key) not in others
     }
 
 
 def _category(value: dict) -> tuple[str, float]:
     """Return name and weight of one of MediaPipe's categories."""
-    plain = {_plain(key): one for key, one in value.items()}
+    plain = {json_stream.plain(key): one for key, one in value.items()}
     name = next((plain[key] for key in CATEGORY if plain.get(key)), "")
     score = next((plain[key] for key in SCORE if key in plain), None)
     if score is None:

@@ -20,6 +20,11 @@ def starts_as_json(path: str | Path) -> bool:
     return head.lstrip(b"\xef\xbb\xbf\xff\xfe \t\r\n").startswith((b"{", b"["))
 
 
+def plain(key: str) -> str:
+    """Return a key without case and underscores."""
+    return key.replace("_", "").lower()
+
+
 def items(path: str | Path, lists: Collection[str]) -> Iterator[tuple[str, Any]]:
     """Yield key and value of every member, and each element of the lists that are named.
 

@@ -56,10 +56,10 @@ def read(path: str | Path) -> landmark_take.LandmarkTake:
     about: dict[str, Any] = {}
     frames: list[Frame] = []
     for key, value in json_stream.items(path, FRAMES):
-        if key and not key.isdecimal() and _plain(key) not in LANDMARKS:
-            about |= {_plain(key): value}
+        if key and not key.isdecimal() and json_stream.plain(key) not in LANDMARKS:
+            about |= {json_stream.plain(key): value}
             if key.lower() in INSIDE and isinstance(value, dict):
-                about |= {_plain(name): one for name, one in value.items()}
+                about |= {json_stream.plain(name): one for name, one in value.items()}
             continue
         try:
             frame = _frame(value)
@@ -78,19 +78,16 @@ def read(path: str | Path) -> landmark_take.LandmarkTake:
         raise errors.InputError(path, f"{error}: export it again") from error
 
 
-def _plain(key: str) -> str:
-    """Return a key without case and underscores."""
-    return key.replace("_", "").lower()
-
-
 def _plainly(value: dict) -> dict[str, Any]:
     """Return an object by plain keys."""
-    return {_plain(key): one for key, one in value.items()}
+    return {json_stream.plain(key): one for key, one in value.items()}
 
 
 def _first(about: dict[str, Any], keys: Sequence[str]) -> Any:
     """Return the first value that an object has under one of some plain keys."""
-    return next((about[key] for key in map(_plain, keys) if about.get(key) is not None), None)
+    return next(
+        (about[key] for key in map(json_stream.plain, keys) if about.get(key) is not None), None
+    )
 
 
 def _number(about: dict[str, Any], keys: Sequence[str]) -> float | None:
