@@ -23,6 +23,7 @@ ASIDE = (
     "align_phones",
     "select_references",
     "write_references",
+    "write_pairs",
 )
 
 logger = logging.getLogger(__name__)
@@ -50,6 +51,7 @@ def main(argv: Sequence[str]) -> None:
         "takes": takes,
         "done": sum(not take["failure"] for take in takes),
         "shots": [_shot(arguments, shot, places) for shot in places],
+        "asides": _asides(arguments, places),
         "rigs": _rigs(arguments, places),
         "actors": _actors(arguments.results, sorted({actor for actor, _ in places.values()})),
         "proposals": _proposals(arguments.results, sorted({s for _, s in places.values()})),
@@ -61,7 +63,7 @@ def main(argv: Sequence[str]) -> None:
 def _say(context: dict, report: str) -> None:
     """Close the run's output with each fault once, and where the page lies."""
     faults = [part["failure"] for part in context["takes"] + context["shots"] if part["failure"]]
-    for fault in dict.fromkeys(faults):
+    for fault in dict.fromkeys(faults + context["asides"]):
         logger.info("%s", fault)
     done, total = context["done"], len(context["takes"])
     logger.info("%d of %d takes are finished, see %s", done, total, report)
@@ -77,11 +79,28 @@ def _failure(logs: Path, places: Sequence[str], whole: bool) -> str:
     for place in places:
         for log in sorted(logs.glob(f"*/{place}.log")):
             stage = log.relative_to(logs).parts[0]
-            for line in log.read_text(encoding="utf-8", errors="replace").splitlines():
-                if line.startswith("error: ") and stage not in ASIDE:
-                    old = "out of date, made by an earlier run: " if whole else ""
-                    return f"{old}{stage}: {line.removeprefix('error: ')}"
+            fault = "" if stage in ASIDE else _fault(log)
+            if fault:
+                old = "out of date, made by an earlier run: " if whole else ""
+                return f"{old}{stage}: {fault}"
     return "" if whole else "not made yet: run keyface"
+
+
+def _fault(log: Path) -> str:
+    """Return the line in which a failed stage ended, or nothing."""
+    for line in log.read_text(encoding="utf-8", errors="replace").splitlines():
+        if line.startswith("error: "):
+            return line.removeprefix("error: ")
+    return ""
+
+
+def _asides(arguments: argparse.Namespace, places: dict) -> list[str]:
+    """Return the lines in which stages failed that no take waits for."""
+    names = {name for shot, (actor, session) in places.items() for name in (shot, actor, session)}
+    names |= {f"{places[shot][0]}/{character}" for shot, character in map(_split, arguments.takes)}
+    logs = [arguments.logs / stage / f"{name}.log" for stage in ASIDE for name in sorted(names)]
+    faults = {log: _fault(log) for log in logs if log.is_file()}
+    return [f"{log.relative_to(arguments.logs).parts[0]}: {f}" for log, f in faults.items() if f]
 
 
 def _upstream(arguments: argparse.Namespace, shot: str, places: dict) -> list[str]:
@@ -125,7 +144,9 @@ def _rigs(arguments: argparse.Namespace, places: dict) -> list[dict]:
     found = []
     for place in sorted(played):
         folder = arguments.results / "cast" / place
-        if (folder / "references" / "index.html").is_file():
+        # a failed job takes its own table away, and leaves the page of an earlier run
+        needed = (folder / "references.parquet", folder / "references" / "index.html")
+        if all(path.is_file() for path in needed):
             page = f"../cast/{place}/references/index.html"
             actor, character = _split(place)
             found.append(

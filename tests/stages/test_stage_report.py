@@ -51,4 +51,19 @@ def test_a_take_older_than_a_fault_is_not_finished(tmp_path, caplog):
 def test_a_fault_of_the_proposals_stops_no_take(tmp_path, caplog):
     finish(tmp_path, "rom/fox", "talk/fox")
     log(tmp_path, "propose_labels", "day", "error: labels.csv: is empty\n")
-    assert report(tmp_path, caplog)[-1].startswith("2 of 2")
+    lines = report(tmp_path, caplog)
+    assert lines[-2] == "propose_labels: labels.csv: is empty"
+    assert lines[-1].startswith("2 of 2")
+    page = (tmp_path / "results/report/index.html").read_text()
+    assert "propose_labels: labels.csv: is empty" in page
+
+
+def test_a_page_of_references_that_have_failed_since_is_left_out(tmp_path, caplog):
+    finish(tmp_path, "rom/fox")
+    page = tmp_path / "results/cast/ada/fox/references/index.html"
+    page.parent.mkdir(parents=True)
+    page.touch()
+    log(tmp_path, "select_references", "ada/fox", "error: channels.tsv: no such table\n")
+    lines = report(tmp_path, caplog)
+    assert "select_references: channels.tsv: no such table" in lines
+    assert "cast/ada/fox" not in (tmp_path / "results/report/index.html").read_text()
