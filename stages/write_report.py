@@ -13,7 +13,23 @@ from pathlib import Path
 from stages import cli
 from stages.files import proposal_table, report_facts, web_page
 
-DELIVERIES = ("mesh.glb", "mesh.exr", "mesh.pc2", "controls.csv", "weights.csv")
+DELIVERIES = (
+    "mesh.glb",
+    "mesh.exr",
+    "mesh.pc2",
+    "mesh.mdd",
+    "mesh.usdc",
+    "points.usdc",
+    "obj/take.json",
+    "texture/plain/texture.exr",
+    "texture/openvat/texture.exr",
+    "blender.py",
+    "maya.py",
+    "maya.anim",
+    "livelink.csv",
+    "controls.csv",
+    "weights.csv",
+)
 PROPOSALS = 8
 # no take waits for these
 ASIDE = (
