@@ -119,10 +119,10 @@ def main(argv: Sequence[str]) -> None:
 
 def _dimensions(options: argparse.Namespace, count: int) -> int | None:
     """Return the number of dimensions that was asked for, or None where it is to be chosen."""
-    first = options.pairs[0] if options.pairs else "--pairs"
+    first = options.pairs[0] if options.pairs else "pairs of the character"
     if count < regression_choice.FEWEST:
         message = f"{count} pairs of {', '.join(options.shots)}: tune"
-        cure = f"{regression_choice.FEWEST} at least, the references say which frames"
+        cure = f"{regression_choice.FEWEST} at least, the page of reference frames says which"
         raise errors.InputError(first, f"{message} {cure}")
     if options.dimensions == CROSS_VALIDATED:
         return None
