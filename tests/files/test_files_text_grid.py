@@ -118,3 +118,10 @@ def test_unknown_phones_are_all_named(tmp_path):
         known_phones.read(path, visemes.read(TABLE, "deng2006"))
     with pytest.raises(errors.InputError, match=re.escape("ends in '.lab'")):
         known_phones.read(tmp_path / "a.lab", {})
+
+
+@pytest.mark.parametrize("text", ["5", "null", '["mouthCues"]'])
+def test_json_without_an_object_is_no_file_of_phones(tmp_path, text):
+    (tmp_path / "a.json").write_text(text)
+    with pytest.raises(errors.InputError, match=r"a\.json: is no TextGrid"):
+        known_phones.read(tmp_path / "a.json", {})
