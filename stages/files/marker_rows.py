@@ -11,6 +11,7 @@ from stages.files import errors
 
 GAPS = frozenset(("", "na", "nan", "n/a", "null", "none", "-", "--"))
 LARGEST = 1e30  # what float32 holds, with room for units
+LONGEST = 40  # letters of a cell that are shown
 SHORTEST_S = 1e-6
 TIME_SLACK = 0.25  # of a frame's length, of a single row
 
@@ -122,7 +123,9 @@ def _numbers(
         except ValueError:
             value = np.nan if text.lower() in GAPS else np.inf
         if abs(value) > LARGEST:
-            message = f"line {line}, column {header[column]}: '{cells[column]}' is no number"
+            # a quotation mark that is never closed holds the rest of the file
+            shown = cells[column][:LONGEST]
+            message = f"line {line}, column {header[column]}: '{shown}' is no number"
             raise errors.InputError(path, message + ": leave it blank for a gap")
         row.append(value)
     return row
