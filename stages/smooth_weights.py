@@ -11,8 +11,9 @@ In this order, because each step needs the one before:
    are left. So nothing is aliased by the next step.
 5. Weights are interpolated linearly and rotations along the great circle; at the source's own rate
    every frame comes through unchanged.
-6. Limits come last, so that they hold in what is baked. Weights of a rig of blendshapes stay in
+6. Limits follow, so that they hold in what is solved. Weights of a rig of blendshapes stay in
    0..1 unless the table of channels says otherwise, those of key shapes have no limits.
+7. An animator's edits are laid over, cell by cell, and nothing touches them afterwards.
 
 Without smoothing 3 and 4 are left out. Head motion is not filtered.
 """
@@ -25,7 +26,7 @@ import numpy as np
 
 from stages import cli
 from stages.core import kept_moments, motion_filter, resample
-from stages.files import channels, errors, lip_gap, rate_text, rig, series, weights
+from stages.files import channels, edits, errors, lip_gap, rate_text, rig, series, weights
 
 HEAD_ROTATION = [f"rotation.{axis}" for axis in "xyzw"]
 HEAD_REST = [f"translation.{axis}" for axis in "xyz"] + ["scale"]
@@ -71,6 +72,9 @@ def build_parser() -> argparse.ArgumentParser:
     )
     parser.add_argument(
         "--head", required=True, choices=["apply", "none"], help="the actor's head motion"
+    )
+    parser.add_argument(
+        "--edits", nargs="*", default=[], help="edited curves of the take, later files last"
     )
     parser.add_argument("--weights", required=True, help="weights.parquet to write")
     parser.add_argument("--csv", required=True, help="weights.csv to write")
@@ -163,7 +167,9 @@ def main(argv: Sequence[str]) -> None:
     columns = dict(zip([*shapes, "confidence"], moved.T, strict=True))
     columns["confidence"] = np.where(either, 0.0, columns["confidence"])
     columns |= weights.head_columns(resample.slerp(turns, *place), resample.linear(rest, *place))
-    sources = [options.solution, options.head_motion, options.rig]
+    for path in options.edits:
+        columns = edits.lay_over(path, frames, columns)
+    sources = [options.solution, options.head_motion, options.rig, *options.edits]
     sources += [options.channels] if options.channels else []
     sources += options.expression if options.smoothing != "none" and options.lip_points else []
     weights.write(options.weights, options.csv, frames, columns, rate, sources)

@@ -157,6 +157,7 @@ class SmallTake:
         channels="",
         smoothing="none",
         lip_points="",
+        edits=(),
     ):
         """Return the command line of smooth_weights."""
         options = {
@@ -172,7 +173,7 @@ class SmallTake:
             "weights": f"{self.folder}/weights.parquet",
             "csv": f"{self.folder}/weights.csv",
         }
-        return words(options)
+        return [*words(options), "--edits", *edits]
 
     def bake_options(self):
         """Return the command line of bake_mesh."""

@@ -228,3 +228,48 @@ def test_bad_lip_points_are_named(take):
     expressed(take, frames=np.arange(100))
     with pytest.raises(errors.InputError, match="its 100 frames are not the 480 of the solution"):
         smoothed(take, lip_points="upper,lower", **options)
+
+
+def edit(take, text, name="anna.csv"):
+    path = take.folder / name
+    path.write_text(text)
+    return str(path)
+
+
+def test_edits_replace_their_cells_and_nothing_else(take):
+    names, solved = smoothed(take)
+    plain = names[1].partition(".")[2]
+    first = edit(take, f"frame,{names[0]},{plain}\n3,2.5,\n4,,-1\n")
+    second = edit(take, f"frame\t{names[0]}\thead.scale\n3\t7\t1.5\n", "ben.tsv")
+    _, edited = smoothed(take, edits=[first, second])
+    expected = solved.shapes.copy()
+    expected[3, 0], expected[4, 1] = 7, -1
+    np.testing.assert_array_equal(edited.shapes, expected)
+    assert edited.scale[3] == 1.5
+    np.testing.assert_array_equal(np.delete(edited.scale, 3), np.delete(solved.scale, 3))
+
+
+def test_a_copy_of_the_curves_gives_them_back_whatever_is_solved(take):
+    smoothed(take)
+    kept = edit(take, (take.folder / "weights.csv").read_text())
+    wanted = (take.folder / "weights.csv").read_bytes()
+    names = rig.read_any(take.folder / "rig.npz").names
+    table(take, f"shape,gain\n{names[0]},3\n")
+    smoothed(take, channels=str(take.folder / "channels.tsv"), edits=[kept])
+    assert (take.folder / "weights.csv").read_bytes() == wanted
+
+
+@pytest.mark.parametrize(
+    ("text", "name", "message"),
+    [
+        ("frame,nose\n1,0\n", "a.csv", "line 1: 'nose' is no curve of the take: use a name of"),
+        ("frame,head.scale\n999,1\n", "a.csv", "line 2, column frame: there is no frame 999"),
+        ("frame,head.scale\n1,1\n1,2\n", "a.csv", "line 3: frame 1 stands in line 2 already"),
+        ("frame,head.scale\n1,much\n", "a.csv", "line 2, column head.scale: 'much' is not a num"),
+        ("frame,head.scale\n", "a.txt", "edits are .tsv or .csv files"),
+        ("head.scale\n1\n", "a.csv", "column 'frame' is missing"),
+    ],
+)
+def test_faults_of_edits_are_named(take, text, name, message):
+    with pytest.raises(errors.InputError, match=message):
+        smoothed(take, edits=[edit(take, text, name)])

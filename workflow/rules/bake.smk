@@ -85,6 +85,7 @@ rule smooth_weights:
         head_motion=head_motion_of,
         expression=expression_of,
         rig=rig_of,
+        edits=edits_of,
     output:
         weights="results/takes/{shot}/{character}/weights.parquet",
         csv="results/takes/{shot}/{character}/weights.csv",
@@ -113,6 +114,7 @@ rule smooth_weights:
         " --lip-points={params.lip_points:q}"
         " --rate={params.rate:q}"
         " --head {params.head:q}"
+        " --edits {input.edits:q}"
         " --weights {output.weights:q}"
         " --csv {output.csv:q}"
         " 2> {log:q}"

@@ -209,6 +209,13 @@ def expression_of(wildcards):
     return [] if points_of(wildcards) == "curves" else [path]
 
 
+def edits_of(wildcards):
+    """Return an animator's edited curves of a take, sorted: a later one has the last word."""
+    folder = f"edits/{wildcards.shot}"
+    tables = [files_of(wildcards.character, f"{folder}/*.{kind}") for kind in ("tsv", "csv")]
+    return sorted(sum(tables, []))
+
+
 def lip_points_of(wildcards):
     """Return the points that show lip closures in a take that points drive."""
     return session_cell("lip_points")(wildcards) if expression_of(wildcards) else ""

@@ -8,11 +8,10 @@ def has_points(tables, shot, points):
     """
     if points in ("markers", "curves"):
         return bool(shot[points])
-    if shot["landmarks"]:
-        return True
-    same = [row.cells for row in tables["shots"] if row.cells["session"] == shot["session"]]
-    labelled = any(row["labels"] for row in same)
-    return bool(shot["video"]) and (labelled or not shot["markers"])
+    if shot["landmarks"] or not shot["video"]:
+        return bool(shot["landmarks"])
+    same = (row.cells for row in tables["shots"] if row.cells["session"] == shot["session"])
+    return not shot["markers"] or any(row["labels"] for row in same)
 
 
 def refuse(name, row, column, message):
