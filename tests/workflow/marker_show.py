@@ -17,6 +17,7 @@ AHEAD_S = 0.4
 FILM_S, LENGTH_S = 3.0, {"a": 4.0, "b": 1.5}  # of the film, of the markers
 SHAPES = ("browInnerUp", "jawOpen", "mouthSmileLeft")
 TUNED = tuple(range(2, 350, 31))  # frames of `a`, from the film's first picture
+REFERENCES = "8"  # frames to tune
 MM = 30.0  # of the actor's face where the plate has 1
 COLUMNS, ROWS = 5, 6
 WITH_MARKERS = [v for v in range(COLUMNS * ROWS) if v % ROWS not in (1, 5)]
@@ -164,7 +165,7 @@ def build(folder):
         write_markers(footage / f"{shot}.csv", shot)
     write_live_link(footage / "phone.csv")
     write_rig(folder / "plate")
-    rig = ("plate", "neutral.obj", "", "cm", "y", "0 0 -2", "4", str(FILM_RATE), "8")
+    rig = ("plate", "neutral.obj", "", "cm", "y", "0 0 -2", "4", str(FILM_RATE), REFERENCES)
     tables = {
         "shots": [
             ("shot", "session", "video", "markers", "sound", "sync_offset_s", "curves", "basis"),

@@ -1,6 +1,7 @@
 """From marker takes and tuned pairs to finished takes of a rig, and what is refused on the way."""
 
 import re
+import shutil
 
 import conftest
 import marker_show
@@ -86,6 +87,16 @@ def test_an_edited_pair_makes_only_its_character_again(show):
     edit(pairs, "\t".join(cells), "\t".join([*cells[:-1], "0.5"]))
     made = {"train_rbf": 1, "select_references": 1, "write_references": 1, "predict_weights": 2}
     assert show.would_run() == made | FOLLOWS
+
+
+def test_the_page_of_references_needs_no_pairs(show):
+    shutil.rmtree(show.folder / "plate/pairs")
+    references = show.folder / "results/cast/eve/tuned/references"
+    shutil.rmtree(references)
+    assert show.snakemake(str(references.relative_to(show.folder) / "index.html")).returncode == 0
+    rows = [line.split("\t") for line in (references / "pairs.tsv").read_text().splitlines()[1:]]
+    assert len(rows) == int(marker_show.REFERENCES)
+    assert {row[0] for row in rows} == {"a"}
 
 
 def test_a_lost_marker_file_fails_its_shot_and_leaves_the_rest(show):
