@@ -69,7 +69,8 @@ def read(
         cli.logger.info("left out, not on the neutral: %s", ", ".join(missing))
     if not names:
         message = f"shows none of the markers of {path} on frame {neutral_frame}"
-        raise errors.InputError(neutral_path, message + ": choose another neutral_frame")
+        cure = "choose another neutral_frame, or name them alike by marker_map"
+        raise errors.InputError(neutral_path, f"{message}: {cure}")
     origin = (shown[ends[0]] + shown[ends[1]]) / 2
     unit = float(np.linalg.norm(shown[ends[1]] - shown[ends[0]]))
     if unit == 0:
