@@ -38,6 +38,7 @@ def stage(
     if Path(path).suffix not in SUFFIXES:
         message = f"'{Path(path).suffix}' is none of {', '.join(SUFFIXES)}: name it so"
         raise errors.InputError(path, message)
+    Path(path).touch()  # says by itself what is wrong where nothing can be written
     made = Usd.Stage.CreateNew(str(path))
     UsdGeom.SetStageUpAxis(made, getattr(UsdGeom.Tokens, character.up_axis))
     UsdGeom.SetStageMetersPerUnit(made, rig.METRES[character.unit])
@@ -58,7 +59,21 @@ def stage(
         }
     }
     yield made
-    made.GetRootLayer().Save()
+    save(made, path)
+
+
+def save(made: Usd.Stage, path: str | Path) -> None:
+    """Write what was added since the last time, and let go of its memory.
+
+    Raises
+    ------
+    errors.InputError
+        if the file cannot be written
+    """
+    try:
+        made.GetRootLayer().Save()
+    except Tf.ErrorException as error:
+        raise errors.InputError(path, "cannot be written: is the disk full?") from error
 
 
 def mesh(made: Usd.Stage, path: str, character: rig.Rig) -> UsdGeom.Mesh:

@@ -30,6 +30,6 @@ def writer(
             points.Set(usd.vectors(positions), number)
             extent.Set(usd.extent(positions), number)
             if int(number) % often == 0:
-                made.GetRootLayer().Save()
+                usd.save(made, path)
 
         yield append
