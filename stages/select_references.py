@@ -11,11 +11,20 @@ from collections.abc import Sequence
 import numpy as np
 
 from stages import cli
-from stages.core import coverage, pca, reference_frames
-from stages.files import channels, driving_points, errors, pairs, phones, reference_table, rig
+from stages.core import coverage, partial_projection, pca, reference_frames
+from stages.files import (
+    actor_points,
+    channels,
+    driving_points,
+    errors,
+    pairs,
+    phones,
+    reference_table,
+    rig,
+)
 
-# principal axes on which frames are compared: the share of the variance that they hold
-EXPLAINED = 0.99
+# principal axes on which frames are compared: the share of the variance that they hold, at most
+EXPLAINED, MOST_AXES = 0.99, 40
 # frames nearer than this to a chosen or tuned one are not proposed [s]
 APART_S = 0.1
 
@@ -51,44 +60,27 @@ class _Frames:
     def __init__(self, arguments: argparse.Namespace):
         if len(arguments.emotions) != len(arguments.shots):
             raise errors.InputError("--emotions", "give one for each shot, - where none is played")
-        read = [driving_points.read(path, arguments.points) for path in arguments.expressions]
-        counts = [len(each.frame) for each in read]
-        starts = np.cumsum([0, *counts[:-1]]).tolist()
-        self.first = dict(zip(arguments.shots, starts, strict=True))
-        self.count = dict(zip(arguments.shots, counts, strict=True))
-        self.rate = dict(zip(arguments.shots, (each.rate for each in read), strict=True))
+        points = actor_points.read(arguments.expressions, arguments.shots, arguments.points)
+        first = arguments.expressions[0]
+        axes, noise = actor_points.axes(first, points, arguments.min_confidence, MOST_AXES)
+        kept = int(np.searchsorted(pca.explained(axes), EXPLAINED)) + 1
+        self.rows = points.shots
+        self.time_s = points.time_s
+        counts = [len(points.shots[shot]) for shot in arguments.shots]
         self.shot = np.repeat(arguments.shots, counts)
-        self.frame = np.concatenate([each.frame for each in read])
-        self.time_s = np.concatenate([each.time_s for each in read])
+        self.place = {shot: np.flatnonzero(self.shot == shot) for shot in arguments.shots}
+        self.frame = np.array([frame for shot in arguments.shots for frame in points.shots[shot]])
         self.emotion = np.repeat(
             np.array(["" if name == "-" else name for name in arguments.emotions], object), counts
         )
-        for path, each in zip(arguments.expressions, read, strict=True):
-            if each.names != read[0].names:
-                message = f"has other points than {arguments.expressions[0]}"
-                raise errors.InputError(path, message + ": give shots of one marker set together")
-        points = np.concatenate([each.points for each in read])
-        whole = np.isfinite(points).all(axis=(1, 2))
-        confidence = np.nan_to_num(np.concatenate([each.confidence for each in read]))
-        self.eligible = whole & (confidence >= arguments.min_confidence)
-        if np.count_nonzero(self.eligible) < 2:
-            message = f"no two frames show all points with confidence {arguments.min_confidence}"
-            raise errors.InputError(arguments.expressions[0], message + ": lower min_confidence")
-        self.features = self._features(points, whole)
-
-    def _features(self, points: np.ndarray, whole: np.ndarray) -> np.ndarray:
-        """Return the frames (T, C) on their main principal axes; zero where points lack."""
-        flat = points.reshape(len(points), -1)
-        axes = pca.fit(flat[self.eligible])
-        kept = int(np.searchsorted(pca.explained(axes), EXPLAINED)) + 1
-        features = np.zeros((len(flat), min(kept, len(axes.components))))
-        features[whole] = pca.project(axes, flat[whole])[:, : features.shape[1]]
-        return features
+        sure = np.nan_to_num(points.confidence) >= arguments.min_confidence
+        self.eligible = sure & (actor_points.observed_share(points.offsets) >= actor_points.ENOUGH)
+        self.features = partial_projection.project(axes, noise, points.offsets)[:, :kept]
 
     def row(self, shot: str, time_s: float) -> int:
         """Return the row of a shot's frame nearest to a time; the ends are held."""
-        frame = min(max(round(time_s * self.rate[shot]), 0), self.count[shot] - 1)
-        return self.first[shot] + frame
+        own = self.place[shot]
+        return int(own[np.abs(self.time_s[own] - time_s).argmin()])
 
     def beside(self, rows: Sequence[int]) -> np.ndarray:
         """Return which frames (T,) are too near in time to some rows to show anything new."""
@@ -126,10 +118,9 @@ def _tuned(arguments: argparse.Namespace, frames: _Frames) -> dict[int, list[str
     """Return the animators that tuned a frame, by its row."""
     shapes = rig.read_any(arguments.rig).names
     limits = channels.read(arguments.channels, shapes, 0.0, 1.0)
-    known = {shot: range(count) for shot, count in frames.count.items()}
     tuned: dict[int, list[str]] = {}
-    for pair in pairs.read(arguments.pairs, known, arguments.other_shots, limits):
-        tuned.setdefault(frames.first[pair.shot] + pair.frame, []).append(pair.animator)
+    for pair in pairs.read(arguments.pairs, frames.rows, arguments.other_shots, limits):
+        tuned.setdefault(frames.rows[pair.shot][pair.frame], []).append(pair.animator)
     return tuned
 
 

@@ -26,12 +26,14 @@ class ActorPoints:
     offsets : (T, P D) float array [face units], differences from the shot's neutral, NaN where not
         observed; all shots in turn
     confidence : (T,) float array, 0..1
+    time_s : (T,) float array [s]
     """
 
     names: list[str]
     shots: dict[str, dict[int, int]]
     offsets: np.ndarray
     confidence: np.ndarray
+    time_s: np.ndarray
 
 
 def offsets_of(driving: driving_points.DrivingPoints, names: Sequence[str]) -> np.ndarray:
@@ -76,6 +78,7 @@ def read(paths: Sequence[str | Path], shots: Sequence[str], kind: str) -> ActorP
         rows,
         offsets[:, np.repeat(often, offsets.shape[1] // len(names))],
         np.concatenate([part.confidence for part in parts]),
+        np.concatenate([part.time_s for part in parts]),
     )
 
 

@@ -78,6 +78,14 @@ def test_what_is_tuned_is_not_proposed_again(actor):
             assert np.abs(actor.tuned - row["frame"]).min() >= 12
 
 
+def test_a_marker_that_fell_off_does_not_take_its_shot_out(actor):
+    points = actor.moved(actor.weights["talk"])
+    points[:, 3] = np.nan
+    actor.write_expression("talk", points, np.ones(FRAMES))
+    rows, _ = select(actor, pairs=())
+    assert {row["shot"] for row in rows} == {"rom", "talk"}
+
+
 def test_the_next_frames_reach_what_the_pairs_do_not(actor):
     """Jaws never open in the pairs: the first proposal opens them."""
     calm = np.flatnonzero(actor.weights["rom"][:, 0] < 0.15)[::5]
@@ -144,5 +152,5 @@ def test_faults_are_named(actor):
     with pytest.raises(errors.InputError, match="give one for each shot"):
         select(actor, emotions=["calm"])
     actor.write_expression("rom", actor.moved(actor.weights["rom"]), np.zeros(FRAMES))
-    with pytest.raises(errors.InputError, match="no two frames show all points"):
+    with pytest.raises(errors.InputError, match=r"rom\.parquet: 0 of 400 frames have all points"):
         select(actor, shots=("rom",))
