@@ -77,7 +77,7 @@ def main(argv: Sequence[str]) -> None:
     curves = curve_mapping.apply(played.shapes, sources)
     lengths = np.linalg.norm(played.rotation, axis=1, keepdims=True)
     head = head_angles.from_quaternions(played.rotation / lengths)
-    times = [Fraction(int(frame)) / played.rate for frame in played.frame]
+    times = [Fraction(int(n)) / played.rate + played.midnight_s for n in played.frame]
     channels = [name for (name,) in spelt]
     with atomic.replacing(options.livelink) as temporary:
         live_link_writer.write(temporary, channels, times, curves, head)

@@ -14,6 +14,8 @@ In this order, because each step needs the one before:
 6. Limits follow, so that they hold in what is solved. Weights of a rig of blendshapes stay in
    0..1 unless the table of channels says otherwise, those of key shapes have no limits.
 7. An animator's edits are laid over, cell by cell, and nothing touches them afterwards.
+8. Of all this the frames between the cut's first and last are delivered, with handles; frames keep
+   their numbers, and times are counted from the film's first picture.
 
 Without smoothing 3 and 4 are left out. Head motion is not filtered.
 """
@@ -25,8 +27,8 @@ from fractions import Fraction
 import numpy as np
 
 from stages import cli
-from stages.core import kept_moments, motion_filter, resample
-from stages.files import channels, edits, errors, lip_gap, rate_text, rig, series, weights
+from stages.core import cut, kept_moments, motion_filter, resample, timecode
+from stages.files import channels, edits, errors, film, lip_gap, rate_text, rig, series, weights
 
 HEAD_ROTATION = [f"rotation.{axis}" for axis in "xyzw"]
 HEAD_REST = [f"translation.{axis}" for axis in "xyz"] + ["scale"]
@@ -75,6 +77,16 @@ def build_parser() -> argparse.ArgumentParser:
     )
     parser.add_argument(
         "--edits", nargs="*", default=[], help="edited curves of the take, later files last"
+    )
+    for flag, text in (
+        ("--first-frame", "first frame that is delivered"),
+        ("--last-frame", "last frame that is delivered"),
+        ("--handles", "frames that are delivered before and after these"),
+        ("--start-timecode", "HH:MM:SS:FF of the film's first picture"),
+    ):
+        parser.add_argument(flag, required=True, help=f"{text}, of the film; or empty")
+    parser.add_argument(
+        "--video", nargs="*", default=[], help="film in whose frames the cut is counted"
     )
     parser.add_argument("--weights", required=True, help="weights.parquet to write")
     parser.add_argument("--csv", required=True, help="weights.csv to write")
@@ -137,6 +149,33 @@ def _smoothed(
     return motion_filter.filtered(values, per_second, cutoff, events)
 
 
+def _kept(
+    options: argparse.Namespace, frames: np.ndarray, rate: Fraction, cut_rate: Fraction
+) -> np.ndarray:
+    """Return which frames (T,) the cut wants."""
+    first, last = (
+        int(text) if text else None for text in (options.first_frame, options.last_frame)
+    )
+    try:
+        return cut.delivered(frames, rate, first, last, int(options.handles or 0), cut_rate)
+    except ValueError as error:
+        end = frames[-1] * cut_rate // rate
+        message = f"{error}: the take ends with frame {end}, correct the cut in shots.tsv"
+        raise errors.InputError(options.solution, message) from error
+
+
+def _timecode(options: argparse.Namespace, cut_rate: Fraction) -> dict:
+    """Return what the weights say of the timecode of the film's first picture."""
+    if not options.start_timecode:
+        return {}
+    try:
+        timecode.parse(options.start_timecode, cut_rate)
+    except ValueError as error:
+        message = f"{error}: correct start_timecode in shots.tsv"
+        raise errors.InputError("--start-timecode", message) from error
+    return {"start_timecode": options.start_timecode, "timecode_rate": str(cut_rate)}
+
+
 def main(argv: Sequence[str]) -> None:
     """Read, fill, adjust, filter, resample, limit, write."""
     options = build_parser().parse_args(argv)
@@ -169,10 +208,14 @@ def main(argv: Sequence[str]) -> None:
     columns |= weights.head_columns(resample.slerp(turns, *place), resample.linear(rest, *place))
     for path in options.edits:
         columns = edits.lay_over(path, frames, columns)
+    cut_rate = film.nominal_rate(options.video[0]) if options.video else solved.rate
+    kept = _kept(options, frames, rate, cut_rate)
+    columns = {name: values[kept] for name, values in columns.items()}
     sources = [options.solution, options.head_motion, options.rig, *options.edits]
     sources += [options.channels] if options.channels else []
     sources += options.expression if options.smoothing != "none" and options.lip_points else []
-    weights.write(options.weights, options.csv, frames, columns, rate, sources)
+    meta = _timecode(options, cut_rate)
+    weights.write(options.weights, options.csv, frames[kept], columns, rate, meta, sources)
 
 
 if __name__ == "__main__":

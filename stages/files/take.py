@@ -23,6 +23,7 @@ class Take:
     frame : (T,) int array
     rate : frames per second
     time_s : (T,) float array [s]
+    first_timecode : of the first frame, or an empty text
     """
 
     character: rig.Rig
@@ -31,6 +32,7 @@ class Take:
     frame: np.ndarray
     rate: Fraction
     time_s: np.ndarray
+    first_timecode: str
 
 
 def read(rig_path: str | Path, weights_path: str | Path) -> Take:
@@ -52,7 +54,9 @@ def read(rig_path: str | Path, weights_path: str | Path) -> Take:
     masked = local_shapes.masked(character.deltas, character.masks, character.mask_index)
     head = take_motion.TakeMotion(played.shapes, played.rotation, played.translation, played.scale)
     motion = take_motion.in_axes(head, character.up_axis, character.face_unit)
-    return Take(character, masked, motion, played.frame, played.rate, played.time_s)
+    return Take(
+        character, masked, motion, played.frame, played.rate, played.time_s, played.first_timecode
+    )
 
 
 def positions(played: Take, weights_path: str | Path) -> Iterator[np.ndarray]:

@@ -6,12 +6,15 @@ Head motion stands in the face's axes (y up, +x the subject's left), whatever th
 """
 
 import dataclasses
+import math
+import re
 from collections.abc import Iterable
 from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 
+from stages.core import timecode
 from stages.files import atomic, errors, series
 
 KIND = "weights"
@@ -33,6 +36,8 @@ class Weights:
     translation : (T, 3) float array [face units]
     scale : (T,) float array
     confidence : (T,) float array in 0..1
+    start_timecode : of time 0, or an empty text
+    timecode_rate : frames per second in which it counts
     """
 
     frame: np.ndarray
@@ -42,6 +47,25 @@ class Weights:
     translation: np.ndarray
     scale: np.ndarray
     confidence: np.ndarray
+    start_timecode: str
+    timecode_rate: Fraction
+
+    @property
+    def midnight_s(self) -> Fraction:
+        """Time 0 as a time of day [s]; 0 where no timecode is known."""
+        if not self.start_timecode:
+            return Fraction(0)
+        return timecode.parse(self.start_timecode, self.timecode_rate) / self.timecode_rate
+
+    @property
+    def first_timecode(self) -> str:
+        """The timecode of the first frame, or an empty text."""
+        if not self.start_timecode:
+            return ""
+        passed = Fraction(int(self.frame[0])) / self.rate * self.timecode_rate
+        count = timecode.parse(self.start_timecode, self.timecode_rate) + math.floor(passed)
+        drops = not re.fullmatch("[0-9:]*", self.start_timecode)
+        return timecode.write(count, self.timecode_rate, drops)
 
     @property
     def time_s(self) -> np.ndarray:
@@ -61,11 +85,12 @@ def write(
     frame: np.ndarray,
     columns: dict[str, np.ndarray],
     rate: Fraction,
+    meta: dict | None = None,
     sources: Iterable[str | Path] = (),
 ) -> None:
-    """Write both files; columns are (T,) float arrays by name."""
+    """Write both files; columns are (T,) float arrays by name, meta may hold the timecode."""
     time_s = _time_s(frame, rate)
-    series.write(path, KIND, frame, time_s, columns, rate, {}, sources)
+    series.write(path, KIND, frame, time_s, columns, rate, meta, sources)
     write_csv(csv_path, frame, time_s, columns)
 
 
@@ -118,4 +143,6 @@ def read(path: str | Path, names: list[str]) -> Weights:
         translation,
         scale[:, 0],
         confidence[:, 0],
+        read_series.meta.get("start_timecode", ""),
+        Fraction(read_series.meta.get("timecode_rate", read_series.rate)),
     )

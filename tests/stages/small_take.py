@@ -158,6 +158,10 @@ class SmallTake:
         smoothing="none",
         lip_points="",
         edits=(),
+        first="",
+        last="",
+        handles="",
+        start="",
     ):
         """Return the command line of smooth_weights."""
         options = {
@@ -171,6 +175,10 @@ class SmallTake:
             "rate": rate,
             "head": head,
             "weights": f"{self.folder}/weights.parquet",
+            "first-frame": first,
+            "last-frame": last,
+            "handles": handles,
+            "start-timecode": start,
             "csv": f"{self.folder}/weights.csv",
         }
         return [*words(options), "--edits", *edits]

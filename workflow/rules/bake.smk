@@ -80,6 +80,7 @@ rule assemble_rig:
 
 rule smooth_weights:
     input:
+        cut_film_source,
         character_source("channels"),
         solution=solution_of,
         head_motion=head_motion_of,
@@ -101,6 +102,11 @@ rule smooth_weights:
         channels=character_path("channels"),
         smoothing=character_cell("smoothing"),
         lip_points=lip_points_of,
+        first_frame=shot_cell("first_frame"),
+        last_frame=shot_cell("last_frame"),
+        handles=shot_cell("handles"),
+        start_timecode=shot_cell("start_timecode"),
+        video=cut_film,
         rate=character_cell("rate"),
         head=character_cell("head"),
     shell:
@@ -115,6 +121,11 @@ rule smooth_weights:
         " --rate={params.rate:q}"
         " --head {params.head:q}"
         " --edits {input.edits:q}"
+        " --first-frame={params.first_frame:q}"
+        " --last-frame={params.last_frame:q}"
+        " --handles={params.handles:q}"
+        " --start-timecode={params.start_timecode:q}"
+        " --video {params.video:q}"
         " --weights {output.weights:q}"
         " --csv {output.csv:q}"
         " 2> {log:q}"
@@ -138,10 +149,12 @@ rule bake_mesh:
     threads: 1
     params:
         code=code_of("bake_mesh"),
+        most_targets=character_cell("most_targets"),
     shell:
         "python -m stages.bake_mesh"
         " --rig {input.rig:q}"
         " --weights {input.weights:q}"
+        " --most-targets {params.most_targets}"
         " --exr {output.exr:q}"
         " --json {output.json:q}"
         " --pc2 {output.pc2:q}"

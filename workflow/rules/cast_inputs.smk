@@ -209,6 +209,18 @@ def expression_of(wildcards):
     return [] if points_of(wildcards) == "curves" else [path]
 
 
+def cut_film(wildcards):
+    """Return the film in whose frames a shot's cut and timecode are counted, if they are."""
+    shot = row_of(SHOW["shots"], "shot", wildcards.shot)
+    counted = any(shot[column] for column in ("first_frame", "last_frame", "start_timecode"))
+    return [shot["video"]] if counted and shot["video"] else []
+
+
+def cut_film_source(wildcards):
+    """Return that film if it exists."""
+    return present(cut_film(wildcards))
+
+
 def edits_of(wildcards):
     """Return an animator's edited curves of a take, sorted: a later one has the last word."""
     folder = f"edits/{wildcards.shot}"

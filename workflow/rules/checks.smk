@@ -47,12 +47,22 @@ def check_sense(tables, face_regions):
         raise errors.InputError("config/regions.tsv", message)
     for row in tables["shots"]:
         check_shot(row)
+        check_cut(row)
     for row in tables["sessions"]:
         check_session(tables, row)
     for row in tables["characters"]:
         check_character(row)
     for row in tables["cast"]:
         check_cast(tables, row)
+
+
+def check_cut(row):
+    """Refuse a cut that ends before it begins, or handles of no cut."""
+    first, last = row.cells["first_frame"], row.cells["last_frame"]
+    if first and last and int(last) < int(first):
+        refuse("shots", row, "last_frame", f"{last} comes before first_frame {first}; correct one")
+    if row.cells["handles"] and not (first or last):
+        refuse("shots", row, "handles", "is of no use without first_frame or last_frame; clear it")
 
 
 def check_shot(row):
