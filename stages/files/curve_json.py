@@ -28,6 +28,7 @@ WEIGHTS = (
 )
 NAMES = ("names", "facsnames", "blendshapenames", "shapenames", "channels", "channelnames")
 FASTEST = 1000  # frames per second
+LARGEST = 1e18  # more than microseconds of today
 RATE = ("fps", "framerate", "rate", "exportfps")
 CATEGORY, SCORE = ("categoryname", "name", "displayname"), ("score", "value", "weight")
 NUMBER = (*headed_text.FRAME, "frameid", "framenumber", "framenum", "index")
@@ -160,6 +161,9 @@ def _rising(path: str | Path, keys: Sequence[float | None], what: str) -> np.nda
     if not keys or any(key is None for key in keys):
         return None
     found = np.array(keys)
+    if (absurd := np.flatnonzero(~(np.abs(found) < LARGEST))).size:
+        message = f"frame {absurd[0]} of the file: its {what} is {found[absurd[0]]:g}"
+        raise errors.InputError(path, message + ": export it again")
     if (wrong := np.flatnonzero(~(np.diff(found) > 0))).size:
         message = f"frame {wrong[0] + 1} of the file: its {what} {found[wrong[0] + 1]:g} does not"
         raise errors.InputError(path, message + " follow the one before: sort the frames")

@@ -173,6 +173,7 @@ def test_what_looks_wrong_is_listed(tmp_path):
         ("arkit_json", lambda t: t.replace('"jawOpen": 0.', '"jawOpen": "0.'), "line 1, column"),
         ("arkit_json", lambda t: t.replace('"jawOpen":', '"a": 1e999, "jawOpen":'), "not finite"),
         ("arkit_json", lambda t: t.replace('"frame": 9,', '"frame": 8,'), "its number 8 does not"),
+        ("arkit_json", lambda t: t.replace('"frame": 9,', '"frame": 1e999,'), "its number is inf"),
         ("arrays_json", lambda t: t.replace('"EyeBlinkLeft", ', ""), "has 52 weights for 51"),
         ("arrays_json", lambda t: t.replace("exportFps", "speed"), "has no times: correct it"),
         ("arkit_csv", lambda t: t.replace("_L", "_Q").replace("_R", "_Q"), "stands twice"),
