@@ -119,7 +119,7 @@ def _markers(folder: Path) -> str:
         f"{fault.marker} {fault.fault} {fault.first_frame}-{fault.last_frame} {fault.cure}"
         for fault in wrong
     ]
-    open_gaps = f" ({left} too long to fill)" if left else ""
+    open_gaps = f" ({left} left open)" if left else ""
     return f"markers: {len(gaps)} gaps{open_gaps}" + "".join(f", {word}" for word in words)
 
 
