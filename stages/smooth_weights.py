@@ -12,7 +12,8 @@ In this order, because each step needs the one before:
 5. Weights are interpolated linearly and rotations along the great circle; at the source's own rate
    every frame comes through unchanged.
 6. Limits follow, so that they hold in what is solved. Weights of a rig of blendshapes stay in
-   0..1 unless the table of channels says otherwise, those of key shapes have no limits.
+   0..1 unless the table of channels says otherwise; those of key shapes and of recorded curves
+   have no limits of themselves.
 7. An animator's edits are laid over, cell by cell, and nothing touches them afterwards.
 8. Of all this the frames between the cut's first and last are delivered, with handles; frames keep
    their numbers, and times are counted from the film's first picture.

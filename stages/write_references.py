@@ -106,7 +106,7 @@ def _table(
     lines = []
     for row in rows:
         weights = starts.get((row["shot"], row["frame"]), np.zeros(len(shapes)))
-        cells = [f"{weight:.2f}" if weight >= LEAST_SHOWN else "" for weight in weights]
+        cells = [f"{weight:.2f}" if abs(weight) >= LEAST_SHOWN else "" for weight in weights]
         lines.append([row["shot"], str(row["frame"]), *cells])
     return delimited.as_text(["shot", "frame", *shapes], lines)
 

@@ -20,7 +20,9 @@ DEFAULTS = {"gain": "1", "offset": "0", "low": "", "high": "", "smoothing": "1",
 
 @dataclasses.dataclass(frozen=True)
 class Channels:
-    """What the table asks of every shape of a rig: `low <= gain u + offset <= high`.
+    """What the table asks of every shape of a rig.
+
+    A weight u stays within low and high as it is solved, and `gain u + offset` as it is delivered.
 
     Attributes
     ----------

@@ -153,4 +153,4 @@ def of_kind(kind):
 def files_of(character, pattern):
     """Return the files in a character's folder that fit a pattern, sorted."""
     row = row_of(SHOW["characters"], "character", character)
-    return sorted(map(str, Path(row["folder"]).glob(pattern)))
+    return sorted(str(path) for path in Path(row["folder"]).glob(pattern) if path.is_file())
