@@ -155,16 +155,26 @@ def solve(points, neutral, places, deltas, method, lower=0.0, upper=1.0, strengt
         np.broadcast_to(np.asarray(each, float), len(deltas)) for each in (lower, upper, strength)
     )
     matrix = deltas.reshape(len(deltas), -1).T
-    usual = _usual(matrix)
-    held = ridge(matrix)
     seen = np.isfinite(points).all(axis=2)
     enough = seen.mean(axis=1) >= ENOUGH
     wanted = targets(points, neutral, places, method)
     wanted[~np.repeat(seen & enough[:, None], neutral.shape[1], axis=1)] = np.nan
-    weights, kkt_residual = (
-        np.full((len(points), len(deltas)), np.nan),
-        np.full(len(points), np.nan),
+    smooth = strength * _usual(matrix) * (float(rate) / STRENGTH_RATE) ** 4
+    weights, kkt_residual = _weights(
+        method, matrix, wanted, enough, lower, upper, smooth, float(rate)
     )
+    misfit = (weights @ matrix.T - wanted).reshape(points.shape)
+    misfit[~np.isfinite(misfit)] = 0.0
+    counted = np.maximum(np.sum(seen, axis=1), 1)
+    residual = np.sqrt(np.sum(misfit**2, axis=(1, 2)) / counted)
+    return Solution(weights, np.where(enough, residual, np.nan), kkt_residual)
+
+
+def _weights(method, matrix, wanted, enough, lower, upper, smooth, rate):
+    """Return the weights (T, K) and KKT residuals (T,) of frames with enough points, NaN else."""
+    held = ridge(matrix)
+    weights = np.full((len(wanted), matrix.shape[1]), np.nan)
+    kkt_residual = np.full(len(wanted), np.nan)
     if method in ("positions", "displacements"):
         weights[enough], kkt_residual[enough] = _unbounded(matrix, wanted[enough], held)
     elif method == "bounded":
@@ -172,17 +182,12 @@ def solve(points, neutral, places, deltas, method, lower=0.0, upper=1.0, strengt
             matrix, wanted[enough], lower, upper, held, FRAME_TOLERANCE
         )
     else:
-        smooth = strength * usual * (float(rate) / STRENGTH_RATE) ** 4
-        for run in _runs(enough, float(rate)):
+        for run in _runs(enough, rate):
             weights[run], kkt_residual[run] = clip_least_squares.solve(
                 matrix, wanted[run], lower, upper, smooth, held
             )
         weights[~enough], kkt_residual[~enough] = np.nan, np.nan
-    misfit = (weights @ matrix.T - wanted).reshape(points.shape)
-    misfit[~np.isfinite(misfit)] = 0.0
-    counted = np.maximum(np.sum(seen, axis=1), 1)
-    residual = np.sqrt(np.sum(misfit**2, axis=(1, 2)) / counted)
-    return Solution(weights, np.where(enough, residual, np.nan), kkt_residual)
+    return weights, kkt_residual
 
 
 def _usual(matrix):
