@@ -51,7 +51,7 @@ def test_every_file_gives_the_same_take(tmp_path, writer):
     assert ("gaps", "") in found_checks(tmp_path) or not dropped
 
 
-@pytest.mark.parametrize("rate", map(Fraction, RATES), ids=RATES)
+@pytest.mark.parametrize("rate", [Fraction(rate) for rate in RATES], ids=RATES)
 @pytest.mark.parametrize(
     "writer", [recorded_curves.live_link, recorded_curves.mediapipe_csv], ids=lambda w: w.__name__
 )

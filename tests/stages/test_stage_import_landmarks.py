@@ -41,7 +41,7 @@ def test_every_tracker_gives_the_same_take(tmp_path, writer):
         np.testing.assert_allclose(read.columns["confidence"][found], 0.98, atol=1e-6)
 
 
-@pytest.mark.parametrize("rate", map(Fraction, RATES), ids=RATES)
+@pytest.mark.parametrize("rate", [Fraction(rate) for rate in RATES], ids=RATES)
 def test_times_in_milliseconds_tell_the_rate(tmp_path, rate):
     count = 2 * int(rate) + 4
     lost = {4, 5, count - 9}
@@ -67,7 +67,7 @@ def test_times_in_milliseconds_tell_the_rate(tmp_path, rate):
     assert merged.time_s[-1] == float((count - 1) / rate)
 
 
-@pytest.mark.parametrize("rate", map(Fraction, RATES), ids=RATES)
+@pytest.mark.parametrize("rate", [Fraction(rate) for rate in RATES], ids=RATES)
 def test_a_films_rate_and_times_count(tmp_path, rate):
     take = other_trackers.Take(20, rate)
     read = run(tmp_path, other_trackers.keyface(take, tmp_path), take.film(tmp_path / "a.mp4"))
