@@ -23,7 +23,7 @@ def build_parser() -> argparse.ArgumentParser:
         default=0.001,
         help="farthest that a vertex may move, as a share of the character's size",
     )
-    parser.add_argument("--keys", required=True, help="keys.csv to write: channel, frame, value")
+    parser.add_argument("--key-table", required=True, help="keys.csv to write: channel, frame, value")
     parser.add_argument("--error", required=True, help="keys.json to write: counts and error")
     return parser
 
@@ -40,7 +40,7 @@ def main(argv: Sequence[str]) -> None:
     if not size > 0:
         raise errors.InputError(options.rig, "the character has no size: give it another neutral")
     kept, worst = key_reduction.reduce(values, played.masked, options.tolerance * size)
-    key_table.write(options.keys, character.names, played.frame, values, kept)
+    key_table.write(options.key_table, character.names, played.frame, values, kept)
     counts = dict(zip(character.names, kept.sum(axis=0).tolist(), strict=True))
     key_table.write_error(
         options.error,

@@ -13,7 +13,7 @@ from stages.files import errors
 
 
 def export(take, tolerance="0.001"):
-    command = take.options("rig", "weights", keys="keys.csv", error="keys.json")
+    command = take.options("rig", "weights", key_table="keys.csv", error="keys.json")
     export_curves.main([*command, "--tolerance", tolerance])
     with (take.folder / "keys.csv").open(newline="") as stream:
         rows = list(csv.DictReader(stream))

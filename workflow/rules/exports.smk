@@ -150,7 +150,7 @@ rule export_curves:
         rig=rig_of,
         weights="results/takes/{shot}/{character}/weights.parquet",
     output:
-        keys="results/takes/{shot}/{character}/keys.csv",
+        key_table="results/takes/{shot}/{character}/keys.csv",
         error="results/takes/{shot}/{character}/keys.json",
     log:
         "logs/export_curves/{shot}/{character}.log",
@@ -167,7 +167,7 @@ rule export_curves:
         "python -m stages.export_curves"
         " --rig {input.rig:q}"
         " --weights {input.weights:q}"
-        " --keys {output.keys:q}"
+        " --key-table {output.key_table:q}"
         " --error {output.error:q}"
         " 2> {log:q}"
 
