@@ -23,9 +23,7 @@ def build_parser() -> argparse.ArgumentParser:
         default=0.001,
         help="farthest that a vertex may move, as a share of the character's size",
     )
-    parser.add_argument(
-        "--key-table", required=True, help="keys.csv to write: a row for each key"
-    )
+    parser.add_argument("--key-table", required=True, help="keys.csv to write: a row for each key")
     parser.add_argument("--error", required=True, help="keys.json to write: counts and error")
     return parser
 

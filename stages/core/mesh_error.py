@@ -23,7 +23,8 @@ def worst(parts: list[compose.Block], wrong: np.ndarray) -> tuple[np.ndarray, np
             if not len(shapes):
                 continue
             moved = wrong[rows][:, shapes] @ deltas
-            squares = np.sum(moved.reshape(len(moved), stop - start, -1) ** 2, axis=2)
+            moved = moved.reshape(len(moved), stop - start, -1)
+            squares = np.einsum("tvd,tvd->tv", moved, moved)
             place = squares.argmax(axis=1)
             here = squares[np.arange(len(squares)), place]
             above = here > largest[rows]
