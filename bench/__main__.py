@@ -19,6 +19,7 @@ RIGS = (
     "equation_trial",
     "rbf_trial",
     "filter_trial",
+    "key_reduction_trial",
 )
 SPEECH = ("sync_trial", "phone_trial")
 

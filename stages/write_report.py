@@ -27,6 +27,7 @@ DELIVERIES = (
     "maya.py",
     "maya.anim",
     "livelink.csv",
+    "keys.csv",
     "controls.csv",
     "weights.csv",
 )

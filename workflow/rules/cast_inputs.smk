@@ -253,6 +253,7 @@ def shown_performance(wildcards):
 # the files that each name in the column outputs stands for
 OUTPUTS = {
     "blender": ["blender.py"],
+    "keys": ["keys.csv", "keys.json"],
     "livelink": ["livelink.csv"],
     "maya": ["maya.py", "maya.anim"],
     "mdd": ["mesh.mdd"],

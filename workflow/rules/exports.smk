@@ -145,6 +145,33 @@ rule export_blender:
         " 2> {log:q}"
 
 
+rule export_curves:
+    input:
+        rig=rig_of,
+        weights="results/takes/{shot}/{character}/weights.parquet",
+    output:
+        key_table="results/takes/{shot}/{character}/keys.csv",
+        error="results/takes/{shot}/{character}/keys.json",
+    log:
+        "logs/export_curves/{shot}/{character}.log",
+    benchmark:
+        "logs/export_curves/{shot}/{character}.tsv"
+    wildcard_constraints:
+        character=of_kind("mesh"),
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("export_curves"),
+    shell:
+        "python -m stages.export_curves"
+        " --rig {input.rig:q}"
+        " --weights {input.weights:q}"
+        " --key-table {output.key_table:q}"
+        " --error {output.error:q}"
+        " 2> {log:q}"
+
+
 rule export_livelink:
     input:
         rig=rig_of,
