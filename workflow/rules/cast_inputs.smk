@@ -50,8 +50,10 @@ def sculpts(wildcards):
 
 
 def rig_shapes(wildcards):
-    """Return the shapes of a character's rig, sorted."""
+    """Return the shapes of a character's rig, sorted; none where a GLB holds them all."""
     suffix = Path(character_row(wildcards.character)["neutral"]).suffix
+    if suffix == ".glb":
+        return []
     return files_of(wildcards.character, f"shapes/*{suffix}")
 
 
