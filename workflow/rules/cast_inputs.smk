@@ -276,6 +276,17 @@ def takes():
     return wanted
 
 
+def rig_checks():
+    """Return what looks wrong with the rigs of the cast."""
+    played = [row.cells for row in SHOW["cast"]]
+    rigs = [
+        f"results/cast/{row['actor']}/{row['character']}"
+        for row in played
+        if character_row(row["character"])["method"] != "key_shapes"
+    ]
+    return [f"{folder}/rig_checks.tsv" for folder in dict.fromkeys(rigs)]
+
+
 def report_command():
     """Return the command that writes the run's report from what exists."""
     shots = []
