@@ -29,6 +29,7 @@ rule all:
         label_proposals(),
         briefs(),
         reference_pages(),
+        rig_checks(),
         takes(),
 
 

@@ -1,6 +1,7 @@
-"""Put the shapes of an existing blendshape rig, one mesh each, together into a rig.
+"""Put the shapes of an existing blendshape rig, a mesh each or a GLB of all, together into a rig.
 
-A shape is called after its file; a single mask, `face`, gives each the whole mesh.
+A shape is called after its file, or by the name that a GLB file gives its morph target; a single
+mask, `face`, gives each the whole mesh.
 """
 
 import argparse
@@ -12,7 +13,7 @@ import numpy as np
 
 from stages import cli
 from stages.core import local_shapes
-from stages.files import errors, rig, sculpts
+from stages.files import errors, glb_rig, rig, sculpts
 
 MASK = "face"
 
@@ -20,7 +21,7 @@ MASK = "face"
 def build_parser() -> argparse.ArgumentParser:
     """Return the stage's command line."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--neutral", required=True, help="the neutral: .obj, .ply or .csv")
+    parser.add_argument("--neutral", required=True, help="the neutral: .obj, .ply, .csv or .glb")
     parser.add_argument("--shapes", nargs="*", default=[], help="one file of its kind per shape")
     parser.add_argument("--shape-folder", required=True, help="where the shapes are expected")
     parser.add_argument("--unit", required=True, choices=sorted(rig.METRES), help="of the files")
@@ -47,10 +48,10 @@ def _names(paths: Sequence[str], folder: str) -> list[str]:
     return names
 
 
-def main(argv: Sequence[str]) -> None:
-    """Read the neutral and every shape, keep what moves, write the rig."""
-    options = build_parser().parse_args(argv)
-    pivot = rig.pivot("--pivot", options.pivot)
+def _read_files(
+    options: argparse.Namespace,
+) -> tuple[sculpts.Pose, list[str], local_shapes.LocalShapes]:
+    """Return the neutral, names and shapes of a file each."""
     names = _names(options.shapes, options.shape_folder)
     neutral = sculpts.read_neutral(options.neutral)
     deltas = local_shapes.gather(
@@ -59,6 +60,28 @@ def main(argv: Sequence[str]) -> None:
     for path, moves in zip(options.shapes, local_shapes.touched(deltas), strict=True):
         if not moves:
             cli.logger.warning("%s: is the neutral itself, so it moves nothing", path)
+    return neutral, names, deltas
+
+
+def _read_glb(path: str) -> tuple[sculpts.Pose, list[str], local_shapes.LocalShapes]:
+    """Return the neutral, names and shapes of one GLB file."""
+    found = glb_rig.read(path)
+    for note in found.notes:
+        cli.logger.warning("%s: %s", path, note)
+    for name, moves in zip(found.names, local_shapes.touched(found.deltas), strict=True):
+        if not moves:
+            cli.logger.warning("%s: %s moves nothing", path, name)
+    return found.neutral, found.names, found.deltas
+
+
+def main(argv: Sequence[str]) -> None:
+    """Read the neutral and every shape, keep what moves, write the rig."""
+    options = build_parser().parse_args(argv)
+    pivot = rig.pivot("--pivot", options.pivot)
+    if Path(options.neutral).suffix.lower() == ".glb":
+        neutral, names, deltas = _read_glb(options.neutral)
+    else:
+        neutral, names, deltas = _read_files(options)
     result = rig.Rig(
         names=[f"{MASK}.{name}" for name in names],
         mask_names=[MASK],

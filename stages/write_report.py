@@ -41,6 +41,7 @@ ASIDE = (
     "select_references",
     "write_references",
     "write_pairs",
+    "check_rig",
 )
 
 logger = logging.getLogger(__name__)
@@ -156,15 +157,16 @@ def _shot(arguments: argparse.Namespace, shot: str, places: dict) -> dict:
 
 
 def _rigs(arguments: argparse.Namespace, places: dict) -> list[dict]:
-    """Return what the page says of characters that are driven by tuned pairs."""
+    """Return what the page says of characters that are rigs of shapes."""
     played = {f"{places[shot][0]}/{character}" for shot, character in map(_split, arguments.takes)}
     found = []
     for place in sorted(played):
         folder = arguments.results / "cast" / place
         # a failed job takes its own table away, and leaves the page of an earlier run
         needed = (folder / "references.parquet", folder / "references" / "index.html")
-        if all(path.is_file() for path in needed):
-            page = f"../cast/{place}/references/index.html"
+        whole = all(path.is_file() for path in needed)
+        if whole or (folder / "rig_checks.tsv").is_file():
+            page = f"../cast/{place}/references/index.html" if whole else ""
             actor, character = _split(place)
             found.append(
                 {"actor": actor, "character": character, "page": page} | report_facts.rig(folder)

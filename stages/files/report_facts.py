@@ -1,4 +1,4 @@
-"""What a report says of shots, and of rigs that are driven by tuned pairs, from their files."""
+"""What a report says of shots and of rigs, from their files."""
 
 import json
 from pathlib import Path
@@ -18,6 +18,8 @@ from stages.files import (
 MOTION_2D = ("rotation.z", "translation.x", "translation.y", "scale")
 MOTION_3D = tuple(f"{kind}.{axis}" for kind in ("rotation", "translation") for axis in "xyz")
 DOUBTED_PAIRS = 3
+CURVES, RIG = ("curve_checks.tsv", "channel"), ("rig_checks.tsv", "shape")
+SHOWN = 12
 
 
 def is_whole(folder: Path) -> bool:
@@ -37,7 +39,7 @@ def shot(folder: Path) -> dict:
     by_markers = not expression.meta.get("points")
     name = "markers.confidence" if by_markers else "confidence"
     confidence = np.nan_to_num(expression.columns[name])
-    notes = [_residuals(folder), _markers(folder), _sync(folder), _checks(folder)]
+    notes = [_residuals(folder), _markers(folder), _sync(folder), _checks(folder, CURVES)]
     leak = _leak(folder, motion, "markers" if by_markers else "video")
     return _facts(confidence, leak, notes)
 
@@ -45,7 +47,7 @@ def shot(folder: Path) -> dict:
 def _curves(folder: Path) -> dict:
     """Return the same of a shot that holds recorded curves alone."""
     curves = series.read(folder / "curves.parquet", "curves")
-    return _facts(np.nan_to_num(curves.columns["confidence"]), "-", [_checks(folder)])
+    return _facts(np.nan_to_num(curves.columns["confidence"]), "-", [_checks(folder, CURVES)])
 
 
 def _facts(confidence: np.ndarray, leak: str, notes: list[str]) -> dict:
@@ -61,7 +63,10 @@ def _facts(confidence: np.ndarray, leak: str, notes: list[str]) -> dict:
 
 
 def rig(folder: Path) -> dict:
-    """Return pairs, the share of frames that they do not reach, and the pairs to doubt first."""
+    """Return pairs, the share of frames they do not reach, those to doubt first, and checks."""
+    facts = {"pairs": "-", "uncovered": "-", "doubted": "", "checks": _checks(folder, RIG)}
+    if not (folder / "references.parquet").is_file():
+        return facts
     _, header = reference_table.read(folder / "references.parquet")
     uncovered, path = header["uncovered"], folder / "pair_residuals.parquet"
     doubted = []
@@ -70,7 +75,7 @@ def rig(folder: Path) -> dict:
             pair = f"{row['animator']}'s {row['shot']} {row['frame']}"
             partner = f"{row['partner_animator']}'s {row['partner_shot']} {row['partner_frame']}"
             doubted.append(f"{pair} (off by {row['residual']:.2f}, see {partner})")
-    return {
+    return facts | {
         "pairs": header["pairs"],
         "uncovered": "-" if uncovered is None else f"{uncovered:.0%}",
         "doubted": "; ".join(doubted),
@@ -123,15 +128,15 @@ def _markers(folder: Path) -> str:
     return f"markers: {len(gaps)} gaps{open_gaps}" + "".join(f", {word}" for word in words)
 
 
-def _checks(folder: Path) -> str:
-    """Return what looks wrong in recorded curves."""
-    path = folder / "curve_checks.tsv"
-    if not path.is_file():
+def _checks(folder: Path, table: tuple[str, str]) -> str:
+    """Return what looks wrong in recorded curves, or with a rig, the gravest first."""
+    name, column = table
+    if not (folder / name).is_file():
         return ""
-    rows = delimited.read(path, ("check", "channel", "detail", "cure"))
-    return "; ".join(
-        " ".join(row.cells[name] for name in ("check", "channel", "detail")) for row in rows
-    )
+    rows = delimited.read(folder / name, ("check", column, "detail", "cure"))
+    words = [" ".join(row.cells[cell] for cell in ("check", column, "detail")) for row in rows]
+    more = [f"{len(words) - SHOWN} more in {name}"] if len(words) > SHOWN else []
+    return "; ".join(words[:SHOWN] + more)
 
 
 def _sync(folder: Path) -> str:

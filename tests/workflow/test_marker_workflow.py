@@ -6,9 +6,11 @@ import shutil
 import conftest
 import marker_show
 import numpy as np
+import pygltflib as gltf
 import pytest
 
-from stages.files import series
+from stages.core import local_shapes
+from stages.files import rig, series
 
 FOLLOWS = {"smooth_weights": 2, "bake_mesh": 2, "render_preview": 2}
 SOLUTIONS = {"tuned": "predicted", "solved": "solved"}
@@ -143,7 +145,67 @@ def test_a_shot_of_another_actor_trains_nobody_again(show):
     assert not {"train_rbf", "select_references", "predict_weights"} & set(planned)
 
 
+def write_glb(path):
+    """Write the plate and its shapes as one file."""
+    neutral, shapes = marker_show.plate()
+    arrays = [array.astype("<f4") for array in (neutral, *shapes)]
+    size, count = arrays[0].nbytes, len(arrays)
+    document = gltf.GLTF2(
+        meshes=[
+            gltf.Mesh(
+                primitives=[
+                    gltf.Primitive(
+                        attributes=gltf.Attributes(POSITION=0),
+                        targets=[{"POSITION": number} for number in range(1, count)],
+                    )
+                ],
+                extras={"targetNames": list(marker_show.SHAPES)},
+            )
+        ],
+        accessors=[
+            gltf.Accessor(bufferView=number, componentType=5126, count=len(neutral), type="VEC3")
+            for number in range(count)
+        ],
+        bufferViews=[
+            gltf.BufferView(buffer=0, byteOffset=number * size, byteLength=size)
+            for number in range(count)
+        ],
+        buffers=[gltf.Buffer(byteLength=count * size)],
+    )
+    document.set_binary_blob(b"".join(array.tobytes() for array in arrays))
+    document.save_binary(str(path))
+
+
+def test_a_rig_in_one_file_does_what_a_folder_of_shapes_does(show):
+    checks = "results/cast/eve/solved/rig_checks.tsv"
+    before = rig.read(show.folder / "results/cast/eve/solved/rig.npz", "mesh")
+    table = (show.folder / checks).read_text()
+    write_glb(show.folder / "plate/neutral.glb")
+    row = "solved\tblendshapes\tplate\tneutral"
+    edit(show.folder / "config/characters.tsv", f"{row}.obj", f"{row}.glb")
+    shutil.rmtree(show.folder / "results/cast/eve/solved")
+    solved = "results/takes/b/solved/solved.parquet"
+    run = show.snakemake(checks, solved)
+    assert run.returncode == 0, run.stderr
+    after = rig.read(show.folder / "results/cast/eve/solved/rig.npz", "mesh")
+    assert after.names == before.names
+    np.testing.assert_allclose(
+        local_shapes.dense(after.deltas), local_shapes.dense(before.deltas), atol=1e-5
+    )
+    assert (show.folder / checks).read_text() == table
+    found = series.read(show.folder / solved, "solved")
+    weights = np.stack([found.columns[f"face.{name}"] for name in marker_show.SHAPES], axis=1)
+    expected = marker_show.weights("b", found.time_s)
+    assert np.sqrt(np.mean((weights - expected) ** 2, axis=0)).max() < 0.02
+
+
 SENSELESS = [
+    (
+        "characters",
+        "solved\tblendshapes\tplate\tneutral.obj\t\t",
+        "solved\tkey_shapes\tplate\tneutral.glb\tmasks.tsv\t",
+        r"config/characters\.tsv: line 3, column neutral: sculpts need an \.obj",
+    ),
     (
         "characters",
         "solved\tblendshapes\tplate\tneutral.obj\t\t",

@@ -50,8 +50,10 @@ def sculpts(wildcards):
 
 
 def rig_shapes(wildcards):
-    """Return the shapes of a character's rig, sorted."""
+    """Return the shapes of a character's rig, sorted; none where a GLB holds them all."""
     suffix = Path(character_row(wildcards.character)["neutral"]).suffix
+    if suffix == ".glb":
+        return []
     return files_of(wildcards.character, f"shapes/*{suffix}")
 
 
@@ -273,6 +275,17 @@ def takes():
         for name in show.listed(character_row(character)["outputs"]):
             wanted += [f"{folder}/{file}" for file in OUTPUTS[name]]
     return wanted
+
+
+def rig_checks():
+    """Return what looks wrong with the rigs of the cast."""
+    played = [row.cells for row in SHOW["cast"]]
+    rigs = [
+        f"results/cast/{row['actor']}/{row['character']}"
+        for row in played
+        if character_row(row["character"])["method"] != "key_shapes"
+    ]
+    return [f"{folder}/rig_checks.tsv" for folder in dict.fromkeys(rigs)]
 
 
 def report_command():

@@ -114,6 +114,8 @@ def check_character(row):
     needed = {"key_shapes": "masks", "blendshapes": "virtual_markers"}
     if row.cells["method"] == "key_shapes" and "livelink" in show.listed(row.cells["outputs"]):
         refuse("characters", row, "outputs", "livelink needs a rig of named shapes; remove it")
+    if row.cells["method"] == "key_shapes" and row.cells["neutral"].endswith(".glb"):
+        refuse("characters", row, "neutral", "sculpts need an .obj, .ply or .csv; export the mesh")
     column = needed.get(row.cells["method"])
     if row.cells["outputs"] and row.cells["neutral"].endswith(".csv"):
         refuse("characters", row, "outputs", "a table of controls has no mesh; clear the cell")

@@ -1,7 +1,7 @@
 """From tuned pairs, or from the rig alone, to the weights of an existing blendshape rig.
 
-Needs expression.parquet of the shots and the character's folder. Makes rig.npz of each actor and
-character, and predicted.parquet or solved.parquet of each take.
+Needs expression.parquet of the shots and the character's folder. Makes rig.npz and
+rig_checks.tsv of each actor and character, and predicted.parquet or solved.parquet of each take.
 """
 
 
@@ -38,6 +38,31 @@ rule assemble_blendshapes:
         " --pivot={params.pivot:q}"
         " --face-unit {params.face_unit}"
         " --rig {output.rig:q}"
+        " 2> {log:q}"
+
+
+rule check_rig:
+    input:
+        rig="results/cast/{actor}/{character}/rig.npz",
+        names=data_table("shape_names.tsv"),
+    output:
+        checks="results/cast/{actor}/{character}/rig_checks.tsv",
+    log:
+        "logs/check_rig/{actor}/{character}.log",
+    benchmark:
+        "logs/check_rig/{actor}/{character}.tsv"
+    wildcard_constraints:
+        character=of_method("rbf", "blendshapes"),
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("check_rig"),
+    shell:
+        "python -m stages.check_rig"
+        " --rig {input.rig:q}"
+        " --names {input.names:q}"
+        " --checks {output.checks:q}"
         " 2> {log:q}"
 
 
