@@ -134,7 +134,14 @@ def _checks(folder: Path, table: tuple[str, str]) -> str:
     if not (folder / name).is_file():
         return ""
     rows = delimited.read(folder / name, ("check", column, "detail", "cure"))
-    words = [" ".join(row.cells[cell] for cell in ("check", column, "detail")) for row in rows]
+    alike: dict[tuple[str, str], list[str]] = {}
+    for row in rows:
+        found = row.cells["check"], row.cells["detail"]
+        alike.setdefault(found, []).append(row.cells[column])
+    words = [
+        " ".join(filter(None, (check, ", ".join(filter(None, own)), detail)))
+        for (check, detail), own in alike.items()
+    ]
     more = [f"{len(words) - SHOWN} more in {name}"] if len(words) > SHOWN else []
     return "; ".join(words[:SHOWN] + more)
 
