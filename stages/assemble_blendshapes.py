@@ -45,6 +45,9 @@ def _names(paths: Sequence[str], folder: str) -> list[str]:
         if not re.fullmatch(r"[^.:/\s]+", name):
             message = f"'{name}' is no name of a shape: rename it without blanks, dots and colons"
             raise errors.InputError(path, message)
+        if names.count(name) > 1:
+            message = f"shape '{name}' stands in two files of this folder: remove one"
+            raise errors.InputError(path, message)
     return names
 
 

@@ -52,6 +52,19 @@ def test_a_shape_that_moves_nothing_is_kept_and_said(tmp_path, caplog):
     assert "still.obj: is the neutral itself" in caplog.text
 
 
+def test_two_files_of_one_shape_are_refused(tmp_path):
+    (tmp_path / "other").mkdir()
+    folders = tmp_path, tmp_path / "other"
+    for folder in folders:
+        write_obj(folder / "jawOpen.obj", NEUTRAL + 1, FACES)
+    write_obj(tmp_path / "neutral.obj", NEUTRAL, FACES)
+    argv = ["--shapes", *(str(folder / "jawOpen.obj") for folder in folders)]
+    argv += ["--neutral", str(tmp_path / "neutral.obj"), "--shape-folder", str(tmp_path)]
+    argv += ["--unit", "cm", "--up-axis", "y", "--pivot", "0 0 0", "--face-unit", "1"]
+    with pytest.raises(errors.InputError, match="'jawOpen' stands in two files"):
+        assemble_blendshapes.main([*argv, "--rig", str(tmp_path / "rig.npz")])
+
+
 @pytest.mark.parametrize(
     ("shapes", "changed", "message"),
     [

@@ -54,7 +54,9 @@ def rig_shapes(wildcards):
     suffix = Path(character_row(wildcards.character)["neutral"]).suffix
     if suffix == ".glb":
         return []
-    return files_of(wildcards.character, f"shapes/*{suffix}")
+    # a folder may mix mesh formats: none of its shapes is lost without a word
+    kinds = (".csv",) if suffix == ".csv" else (".obj", ".ply")
+    return sorted(sum((files_of(wildcards.character, f"shapes/*{kind}") for kind in kinds), []))
 
 
 def pair_tables(wildcards):
