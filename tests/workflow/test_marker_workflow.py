@@ -204,7 +204,7 @@ SENSELESS = [
         "characters",
         "solved\tblendshapes\tplate\tneutral.obj\t\t",
         "solved\tkey_shapes\tplate\tneutral.glb\tmasks.tsv\t",
-        r"config/characters\.tsv: line 3, column neutral: sculpts need an \.obj",
+        r"config/characters\.tsv: line 3, column neutral: this method needs an \.obj",
     ),
     (
         "characters",

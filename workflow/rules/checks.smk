@@ -1,6 +1,5 @@
 """What the tables of a show must say together, beyond what each says alone; no rules."""
 
-
 # what may drive the characters of each method
 POINTS = {
     "key_shapes": ["video"],
