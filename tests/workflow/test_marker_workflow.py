@@ -210,7 +210,7 @@ SENSELESS = [
         "characters",
         "solved\tblendshapes\tplate\tneutral.obj\t\t",
         "solved\tkey_shapes\tplate\tneutral.obj\tmasks.tsv\t",
-        r"config/cast\.tsv: line 3, column points: method key_shapes is driven by the film",
+        r"config/cast\.tsv: line 3, column points: method key_shapes is driven by video; write",
     ),
     (
         "shots",
