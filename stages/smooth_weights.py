@@ -12,8 +12,8 @@ In this order, because each step needs the one before:
 5. Weights are interpolated linearly and rotations along the great circle; at the source's own rate
    every frame comes through unchanged.
 6. Limits follow, so that they hold in what is solved. Weights of a rig of blendshapes stay in
-   0..1 unless the table of channels says otherwise; those of key shapes and of recorded curves
-   have no limits of themselves.
+   0..1 unless the table of channels says otherwise; those of key shapes, layers and recorded
+   curves have no limits of themselves.
 7. An animator's edits are laid over, cell by cell, and nothing touches them afterwards.
 8. Of all this the frames between the cut's first and last are delivered, with handles; frames keep
    their numbers, and times are counted from the film's first picture.
@@ -40,6 +40,7 @@ LIMITS = {
     "mapped": (-np.inf, np.inf),
     "predicted": (0.0, 1.0),
     "solved": (0.0, 1.0),
+    "directed": (-np.inf, np.inf),
 }
 CUTOFF_HZ = 10.0
 CUTOFF_OF_RATE = 1 / 3
@@ -49,7 +50,9 @@ def build_parser() -> argparse.ArgumentParser:
     """Return the stage's command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument(
-        "--solution", required=True, help="key_weights, predicted, solved or mapped .parquet"
+        "--solution",
+        required=True,
+        help="key_weights, predicted, solved, directed or mapped .parquet",
     )
     parser.add_argument("--head-motion", required=True, help="head_motion.parquet of the shot")
     parser.add_argument(
