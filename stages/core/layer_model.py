@@ -1,0 +1,188 @@
+"""Hold the extremes of all layers under all masks, and bring frames to their size."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+RIDGE = 1e-9
+
+
+class Model(NamedTuple):
+    """Hold K extremes of J layers under R masks of D coordinates.
+
+    Displacement ``i = l * K + k`` is extreme k under mask l; the solver's point holds the weights
+    (R * J) and then the coefficients (K).
+
+    Attributes
+    ----------
+    basis : (D, K) float array, extremes less the neutral [balanced]
+    layer : (K,) int array, the layer of each extreme
+    masks : (R, D) float array, one at every coordinate in sum
+    lip_mask, speech_layer, closed : int, mask, layer and extreme of the lip bias; -1 without
+    pairs : (N, 2) int array, masks that overlap, each with itself too
+    gram : (R * K, R * K) float array, ``(M_l B)'(M_m B)``
+    scale : float, mean of the Gram matrix's diagonal where it is not zero
+    span : (R * K, R * K) float array, inverse of the Gram matrix plus a slight ridge
+    first, second : (R * K,) int array, where a displacement's weight and coefficient stand
+    group : (R * J + K,) int array, the simplex of each entry of the solver's point
+    mask_group : (R * K,) int array, the mask of each displacement
+    """
+
+    basis: np.ndarray
+    layer: np.ndarray
+    masks: np.ndarray
+    lip_mask: int
+    speech_layer: int
+    closed: int
+    pairs: np.ndarray
+    gram: np.ndarray
+    scale: float
+    span: np.ndarray
+    first: np.ndarray
+    second: np.ndarray
+    group: np.ndarray
+    mask_group: np.ndarray
+
+    @property
+    def sizes(self) -> tuple[int, int, int]:
+        """Return the numbers of masks, layers and extremes."""
+        return len(self.masks), int(self.layer.max()) + 1, len(self.layer)
+
+
+class Quadratic(NamedTuple):
+    """Hold one frame's data term ``energy - 2 linear'u + u' gram u``.
+
+    Attributes
+    ----------
+    energy : float, the frame's squared length
+    linear : (R * K,) float array
+    gram : (R * K, R * K) float array
+    span : float, the least data term of any u at all
+    """
+
+    energy: float
+    linear: np.ndarray
+    gram: np.ndarray
+    span: float
+
+
+def _check(basis, layer, masks, lip_mask, speech_layer, closed):
+    """Refuse arrays that do not fit together."""
+    if basis.ndim != 2 or layer.shape != basis.shape[1:] or masks.shape[1:] != basis.shape[:1]:
+        raise ValueError(
+            f"expected basis (D, K), layer (K,) and masks (R, D), got {basis.shape}, {layer.shape}"
+            f" and {masks.shape}"
+        )
+    if not (np.isfinite(basis).all() and np.isfinite(masks).all()):
+        raise ValueError(f"basis {basis.shape} and masks {masks.shape} must be finite")
+    if not len(layer) or not np.array_equal(np.unique(layer), np.arange(layer.max() + 1)):
+        raise ValueError(f"layers must be numbered from 0 with none left out, got {layer}")
+    if (masks < 0.0).any() or np.abs(masks.sum(axis=0) - 1.0).max(initial=0.0) > 1e-6:
+        raise ValueError(f"masks {masks.shape} must be at least zero and sum to one everywhere")
+    bias = (lip_mask, speech_layer, closed)
+    if bias != (-1, -1, -1) and not (
+        0 <= lip_mask < len(masks) and 0 <= closed < len(layer) and layer[closed] == speech_layer
+    ):
+        raise ValueError(
+            f"lip_mask, speech_layer and closed {bias} must be all -1, or one of {len(masks)} masks"
+            f" and an extreme of that layer"
+        )
+
+
+def _gram(basis, masks, pairs):
+    """Return ``(M_l B)'(M_m B)`` over coordinates, zero where masks do not overlap."""
+    count = basis.shape[1]
+    gram = np.zeros((len(masks) * count, len(masks) * count))
+    for a, b in pairs:
+        both = np.flatnonzero(masks[a] * masks[b])
+        part = basis[both]
+        block = (part * (masks[a, both] * masks[b, both])[:, None]).T @ part
+        gram[a * count : (a + 1) * count, b * count : (b + 1) * count] = 0.5 * (block + block.T)
+    return gram
+
+
+def build(
+    basis: np.ndarray,
+    layer: np.ndarray,
+    masks: np.ndarray,
+    lip_mask: int = -1,
+    speech_layer: int = -1,
+    closed: int = -1,
+) -> Model:
+    """Precompute everything that does not depend on a frame (Kholgade 2011, eq. 4).
+
+    Parameters
+    ----------
+    basis : (D, K) float array, extremes less the neutral [balanced]
+    layer : (K,) int array, the layer of each extreme, numbered from 0
+    masks : (R, D) float array, at least zero, one at every coordinate in sum
+    lip_mask, speech_layer, closed : int
+        the mask and layer of the lip bias and the index of its extreme /m/; all -1 for none
+
+    Raises
+    ------
+    ValueError
+        if the arrays do not fit together, a layer has no extreme, or masks do not sum to one
+    """
+    basis, masks = np.array(basis, float), np.array(masks, float)
+    layer = np.array(layer, np.int64)
+    _check(basis, layer, masks, lip_mask, speech_layer, closed)
+    regions, layers, count = len(masks), int(layer.max()) + 1, len(layer)
+    pairs = np.argwhere((masks @ masks.T) > 0.0).astype(np.int64)
+    gram = _gram(basis, masks, pairs)
+    diagonal = np.diag(gram)
+    if not diagonal.any():
+        raise ValueError(f"basis {basis.shape}: no extreme differs from the neutral")
+    scale = float(diagonal[diagonal > 0.0].mean())
+    mask_group = np.repeat(np.arange(regions), count)
+    return Model(
+        basis,
+        layer,
+        masks,
+        lip_mask,
+        speech_layer,
+        closed,
+        pairs,
+        gram,
+        scale,
+        np.linalg.inv(gram + RIDGE * scale * np.eye(len(gram))),
+        mask_group * layers + np.tile(layer, regions),
+        regions * layers + np.tile(np.arange(count), regions),
+        np.concatenate([np.repeat(np.arange(regions), layers), regions + layer]),
+        mask_group,
+    )
+
+
+def project(model: Model, frame: np.ndarray) -> Quadratic | None:
+    """Return a frame's data term over its observed coordinates; None if less than half are.
+
+    Parameters
+    ----------
+    model : see `Model`
+    frame : (D,) float array, less the neutral [balanced]; NaN = not observed
+
+    Raises
+    ------
+    ValueError
+        if the frame is of another size or not finite where it is observed
+    """
+    frame = np.asarray(frame, float)
+    if frame.shape != model.basis.shape[:1] or np.isinf(frame).any():
+        raise ValueError(
+            f"expected a finite frame {model.basis.shape[:1]}, got {frame.shape}"
+            f" with {np.isinf(frame).sum()} infinite values"
+        )
+    missing = np.isnan(frame)
+    if missing.sum() * 2 > len(frame):
+        return None
+    known = np.where(missing, 0.0, frame)
+    linear = ((model.masks * known) @ model.basis).ravel()
+    energy = float(known @ known)
+    if not missing.any():
+        gram = model.gram
+        spanned = model.span @ linear
+    else:
+        gram = model.gram - _gram(model.basis[missing], model.masks[:, missing], model.pairs)
+        spanned = np.linalg.solve(gram + RIDGE * model.scale * np.eye(len(gram)), linear)
+    span = energy - 2.0 * (linear @ spanned) + spanned @ gram @ spanned
+    return Quadratic(energy, linear, gram, max(span, 0.0))

@@ -1,0 +1,113 @@
+"""Relax the layers to one convex problem over all extremes under each mask, with a proven bound.
+
+With ``u_lk = w_lj a_k`` every mask's displacements lie on one simplex over the K extremes. What the
+relaxation forgets is that the masks share the coefficients, so its minimum is never above the
+layered one. Weights are sums of u, so that what pulls them enters as it is; of a pull on the
+coefficients, ``|a_j - t_j|^2 >= sum_l share_lj w_lj^2 |a_j - t_j|^2``, the latter a quadratic of u.
+"""
+
+import numba
+import numpy as np
+
+from stages.core import layer_kernel, layer_model
+
+
+@numba.njit(cache=True)
+def _assemble(gram, linear, layer, pull, target, share, weights):
+    """Return Hessian and linear term of the relaxed objective."""
+    hessian, slope = 2.0 * gram, -2.0 * linear
+    count = len(layer)
+    layers = layer.max() + 1
+    ahead = pull[weights:] * target[weights:]
+    square = np.zeros(layers)
+    for k in range(count):
+        square[layer[k]] += ahead[k] * target[weights + k]
+    for start in range(0, len(linear), count):
+        for k in range(count):
+            j = layer[k]
+            entry = (start // count) * layers + j
+            portion = 2.0 * share[entry]
+            slope[start + k] -= 2.0 * pull[entry] * target[entry]
+            hessian[start + k, start + k] += portion * pull[weights + k]
+            for other in range(count):
+                if layer[other] == j:
+                    curve = square[j] - ahead[k] - ahead[other]
+                    hessian[start + k, start + other] += 2.0 * pull[entry] + portion * curve
+    return hessian, slope
+
+
+@numba.njit(cache=True)
+def _bound(hessian, slope, group, point):
+    """Return value and Frank-Wolfe bound of a convex quadratic over simplices."""
+    curved = np.zeros(len(point))
+    for i in range(len(point)):
+        if point[i] != 0.0:
+            for j in range(len(point)):
+                curved[j] += hessian[i, j] * point[i]
+    least = np.full(group.max() + 1, np.inf)
+    value, along = 0.0, 0.0
+    for i in range(len(point)):
+        gradient = curved[i] + slope[i]
+        value += (0.5 * curved[i] + slope[i]) * point[i]
+        along += gradient * point[i]
+        least[group[i]] = min(least[group[i]], gradient)
+    return value, value + least.sum() - along
+
+
+def solve(
+    model: layer_model.Model,
+    quadratic: layer_model.Quadratic,
+    pull: np.ndarray,
+    target: np.ndarray,
+    share: np.ndarray,
+    start: np.ndarray,
+) -> tuple[np.ndarray, float]:
+    """Minimise the relaxation; return displacements (R * K,) and a lower bound of the objective.
+
+    The bound, ``f(u) + min_v grad f(u)'(v - u)`` over the simplices, holds at whatever u the
+    iterations end.
+
+    Parameters
+    ----------
+    model, quadratic : see `layer_model`
+    pull, target : (R * J + K,) float array
+        terms ``pull_i (z_i - target_i)^2`` on weights and coefficients; pulls are alike in a layer
+    share : (R * J,) float array
+        how a layer's pull on coefficients is shared among the masks, at most one in sum
+    start : (R * K,) float array, on its simplices
+    """
+    weights = len(share)
+    hessian, slope = _assemble(
+        quadratic.gram, quadratic.linear, model.layer, pull, target, share, weights
+    )
+    point = start.copy()
+    layer_kernel.minimise_quadratic(
+        hessian,
+        slope + hessian @ point,
+        model.mask_group,
+        point,
+        1e-9 * model.scale,
+        layer_model.RIDGE * model.scale,
+    )
+    _, bound = _bound(hessian, slope, model.mask_group, point)
+    fixed = quadratic.energy + np.sum((pull * target**2)[:weights])
+    return point, bound + fixed - 1e-12 * max(fixed, model.scale)
+
+
+def factors(
+    model: layer_model.Model, displacements: np.ndarray, otherwise: np.ndarray
+) -> np.ndarray:
+    """Return the point nearest in kind: ``w_lj = sum_k u_ljk``, ``a_j ~ sum_l u_lj``.
+
+    Parameters
+    ----------
+    model : see `layer_model`
+    displacements : (R * K,) float array, on a simplex under each mask
+    otherwise : (K,) float array, the coefficients of layers without any displacement
+    """
+    regions, layers, count = model.sizes
+    weights = np.bincount(model.first, displacements, minlength=regions * layers)
+    total = displacements.reshape(regions, count).sum(axis=0)
+    size = np.bincount(model.layer, total, minlength=layers)[model.layer]
+    coefficients = np.where(size > 1e-12, total / np.maximum(size, 1e-12), otherwise)
+    return np.concatenate([weights, coefficients])
