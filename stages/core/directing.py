@@ -55,7 +55,7 @@ def presence(time_s: np.ndarray, start_s: float, end_s: float, fade_s: float) ->
     if not fade_s:
         return inside.astype(float)
     nearest = np.minimum(time_s - start_s, end_s - time_s)
-    share = np.clip(nearest / fade_s, 0.0, 1.0)
+    share = np.clip(nearest, 0.0, fade_s) / fade_s
     return np.where(inside, share * share * (3.0 - 2.0 * share), 0.0)
 
 
