@@ -190,6 +190,7 @@ def solution_of(wildcards):
         return f"{take}/mapped.parquet"
     return {
         "key_shapes": f"results/shots/{wildcards.shot}/key_weights.parquet",
+        "layers": f"{take}/directed.parquet",
         "rbf": f"{take}/predicted.parquet",
         "blendshapes": f"{take}/solved.parquet",
     }[method]
@@ -245,7 +246,7 @@ def shown_curves(wildcards):
 
 def shown_tracked(wildcards):
     """Return the tracked points of a take that the film's points drive."""
-    return tracked_of(wildcards) if points_of(wildcards) == "video" else []
+    return tracked_of(wildcards) if points_of(wildcards) in ("video", "both") else []
 
 
 def shown_performance(wildcards):

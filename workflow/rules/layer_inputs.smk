@@ -77,9 +77,9 @@ def directing_rows(wildcards):
     return rows_as_text("directing", character=character, shot=shots)
 
 
-def table_file(name):
-    """Return the path of a table that a show may lack."""
-    return present([f"config/{name}.tsv"])
+def directing_table():
+    """Return the path of the table of gains, which a show may lack."""
+    return "".join(present(["config/directing.tsv"]))
 
 
 def lip_points_of_actor(wildcards):

@@ -19,7 +19,7 @@ def takes():
     wanted = []
     for shot, character in cast_takes():
         folder = f"results/takes/{shot}/{character}"
-        wanted.append(f"{folder}/preview.mp4")
+        wanted += [f"{folder}/preview.mp4", *layer_outputs(shot, character)]
         for name in show.listed(character_row(character)["outputs"]):
             wanted += [f"{folder}/{file}" for file in OUTPUTS[name]]
     return wanted
@@ -31,7 +31,7 @@ def rig_checks():
     rigs = [
         f"results/cast/{row['actor']}/{row['character']}"
         for row in played
-        if character_row(row["character"])["method"] != "key_shapes"
+        if character_row(row["character"])["method"] in ("rbf", "blendshapes")
     ]
     return [f"{folder}/rig_checks.tsv" for folder in dict.fromkeys(rigs)]
 

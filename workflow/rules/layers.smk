@@ -1,0 +1,165 @@
+"""From an actor's extremes and a character's poses to the layers of a take.
+
+Needs expression.parquet of the shots, expressions.tsv and the character's folder. Makes rig.npz,
+poses.parquet and simplices.npz of each actor and character, layers.parquet and directed.parquet of
+each take, and what is asked for of its projection onto blendshapes; and proposals of extremes.
+"""
+
+
+rule assemble_poses:
+    input:
+        character_source("neutral"),
+        character_source("masks"),
+        poses=poses,
+        shapes=blendshapes_of_poses,
+        extremes=data_table("extremes.tsv"),
+    output:
+        rig="results/cast/{actor}/{character}/rig.npz",
+        poses_table="results/cast/{actor}/{character}/poses.parquet",
+    log:
+        "logs/assemble_poses/{actor}/{character}.log",
+    benchmark:
+        "logs/assemble_poses/{actor}/{character}.tsv"
+    wildcard_constraints:
+        character=of_method("layers"),
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("assemble_poses"),
+        neutral=character_path("neutral"),
+        pose_folder=folder_of("poses"),
+        masks=character_path("masks"),
+        painted_masks=character_cell("painted_masks"),
+        unit=character_cell("unit"),
+        up_axis=character_cell("up_axis"),
+        pivot=character_cell("pivot"),
+        face_unit=character_cell("face_unit"),
+    shell:
+        "python -m stages.assemble_poses"
+        " --neutral {params.neutral:q}"
+        " --poses {input.poses:q}"
+        " --pose-folder {params.pose_folder:q}"
+        " --shapes {input.shapes:q}"
+        " --masks {params.masks:q}"
+        " --painted-masks={params.painted_masks:q}"
+        " --extremes {input.extremes:q}"
+        " --unit {params.unit:q}"
+        " --up-axis {params.up_axis:q}"
+        " --pivot={params.pivot:q}"
+        " --face-unit {params.face_unit}"
+        " --rig {output.rig:q}"
+        " --poses-table {output.poses_table:q}"
+        " 2> {log:q}"
+
+
+rule assemble_simplices:
+    input:
+        expressions=layer_expressions,
+        poses="results/cast/{actor}/{character}/poses.parquet",
+        rig="results/cast/{actor}/{character}/rig.npz",
+        extremes=data_table("extremes.tsv"),
+        expression_table=ancient("config/expressions.tsv"),
+        mask_table=ancient("config/actor_masks.tsv"),
+    output:
+        simplices="results/cast/{actor}/{character}/simplices.npz",
+        report="results/cast/{actor}/{character}/simplices.tsv",
+    log:
+        "logs/assemble_simplices/{actor}/{character}.log",
+    benchmark:
+        "logs/assemble_simplices/{actor}/{character}.tsv"
+    wildcard_constraints:
+        character=of_method("layers"),
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("assemble_simplices"),
+        shots=layer_shots,
+        points=points_of,
+        rows=expression_rows,
+        mask_rows=actor_mask_rows,
+        balance=character_cell("balance"),
+        lip_points=lip_points_of_actor,
+        lip_mask=character_cell("lip_mask"),
+        lip_sigma=character_cell("lip_sigma"),
+    shell:
+        "python -m stages.assemble_simplices"
+        " --actor {wildcards.actor:q}"
+        " --expression-table {input.expression_table:q}"
+        " --mask-table {input.mask_table:q}"
+        " --shots {params.shots:q}"
+        " --expressions {input.expressions:q}"
+        " --points {params.points:q}"
+        " --poses {input.poses:q}"
+        " --rig {input.rig:q}"
+        " --extremes {input.extremes:q}"
+        " --balance {params.balance:q}"
+        " --lip-points={params.lip_points:q}"
+        " --lip-mask {params.lip_mask:q}"
+        " --lip-sigma {params.lip_sigma}"
+        " --simplices {output.simplices:q}"
+        " --report {output.report:q}"
+        " 2> {log:q}"
+
+
+rule direct_layers:
+    input:
+        ancient(present([directing_table()])),
+        layers="results/takes/{shot}/{character}/layers.parquet",
+        rig=rig_of,
+        extremes=data_table("extremes.tsv"),
+    output:
+        directed="results/takes/{shot}/{character}/directed.parquet",
+    log:
+        "logs/direct_layers/{shot}/{character}.log",
+    benchmark:
+        "logs/direct_layers/{shot}/{character}.tsv"
+    wildcard_constraints:
+        character=of_method("layers"),
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("direct_layers"),
+        rows=directing_rows,
+        directing=directing_table(),
+    shell:
+        "python -m stages.direct_layers"
+        " --layers {input.layers:q}"
+        " --rig {input.rig:q}"
+        " --directing={params.directing:q}"
+        " --character {wildcards.character:q}"
+        " --shot {wildcards.shot:q}"
+        " --extremes {input.extremes:q}"
+        " --directed {output.directed:q}"
+        " 2> {log:q}"
+
+
+rule export_layers:
+    input:
+        rig=rig_of,
+        weights="results/takes/{shot}/{character}/weights.parquet",
+    output:
+        emotion="results/takes/{shot}/{character}/layers/emotion.csv",
+        speech="results/takes/{shot}/{character}/layers/speech.csv",
+        blink="results/takes/{shot}/{character}/layers/blink.csv",
+    log:
+        "logs/export_layers/{shot}/{character}.log",
+    benchmark:
+        "logs/export_layers/{shot}/{character}.tsv"
+    wildcard_constraints:
+        character=of_method("layers"),
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("export_layers"),
+    shell:
+        "python -m stages.export_layers"
+        " --rig {input.rig:q}"
+        " --weights {input.weights:q}"
+        " --emotion {output.emotion:q}"
+        " --speech {output.speech:q}"
+        " --blink {output.blink:q}"
+        " 2> {log:q}"
