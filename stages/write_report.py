@@ -200,9 +200,8 @@ def _actors(results: Path, actors: Sequence[str]) -> list[dict]:
     return [
         {"name": actor}
         | {
-            page: f"../actors/{actor}/{page}/index.html"
-            for page in pages
-            if (results / "actors" / actor / page / "index.html").is_file()
+            page: f"../{place}" if (results / place).is_file() else ""
+            for page, place in ((p, f"actors/{actor}/{p}/index.html") for p in pages)
         }
         for actor in actors
     ]
