@@ -20,8 +20,8 @@ KIND = "layers"
 MEASURES = {
     "residual": "face units, root mean square per coordinate",
     "outside": "distance from the simplices, 1 is the length of a mean extreme",
-    "objective": "1",
-    "gap": "1, the objective less its lower bound",
+    "objective": "1 is standing still at a mean extreme",
+    "gap": "objective less its lower bound; 1 is standing still at a mean extreme",
     "lip_bias": "0 to 1, gamma of the paper",
 }
 
