@@ -5,12 +5,15 @@ import numpy as np
 from data_example.generator import (
     clay_files,
     drawing,
+    extreme_files,
+    globe,
     human_mesh,
     params,
     puppet,
     radio,
     selection,
     shots,
+    tortoise_files,
 )
 
 ERROR = 0.10
@@ -109,4 +112,6 @@ def write_all(folder, seed=41):
         _write(folder / "puppet" / "sculpts" / region / name, _csv(made))
     rows.append(("puppet", "neutral.csv", PUPPET_ROW))
     clay_files.write_all(folder / "clay")
+    extreme_files.write(folder / "globe", globe.build())
+    tortoise_files.write_all(folder / "tortoise")
     return rows
