@@ -8,7 +8,8 @@ In this order, because each step needs the one before:
 3. Blinks and lip closures are found, at the source's rate, where they are sharpest.
 4. The multiresolution filter removes what lies above 10 Hz, or a third of the character's rate
    where that is lower than the source's, divided by the channel's smoothing; blinks and closures
-   are left. So nothing is aliased by the next step.
+   are left. So nothing is aliased by the next step. Weights of layers stay simplex weights: under a
+   mask, none falls below 0 and their sum does not grow.
 5. Weights are interpolated linearly and rotations along the great circle; at the source's own rate
    every frame comes through unchanged.
 6. Limits follow, so that they hold in what is solved. Weights of a rig of blendshapes stay in
@@ -139,8 +140,9 @@ def _smoothed(
     source: series.Series,
     rate: Fraction,
     asked: channels.Channels,
+    masks: np.ndarray,
 ) -> np.ndarray:
-    """Filter the curves (T, K) at the source's rate."""
+    """Filter the curves (T, K), each under its mask (K,), at the source's rate."""
     if options.smoothing == "none":
         return values
     gap = lip_gap.read("".join(options.expression), options.lip_points, source.frame)
@@ -150,7 +152,8 @@ def _smoothed(
     cutoff[smooth] = float(highest) / asked.strength[smooth]
     per_second = float(source.rate)
     events = kept_moments.find(values, asked.names, asked.keep, per_second, gap)
-    return motion_filter.filtered(values, per_second, cutoff, events)
+    whole = masks if source.meta["kind"] == "directed" else None
+    return motion_filter.filtered(values, per_second, cutoff, events, whole)
 
 
 def _kept(
@@ -183,7 +186,8 @@ def _timecode(options: argparse.Namespace, cut_rate: Fraction) -> dict:
 def main(argv: Sequence[str]) -> None:
     """Read, fill, adjust, filter, resample, limit, write."""
     options = build_parser().parse_args(argv)
-    shapes = rig.read_any(options.rig).names
+    character = rig.read_any(options.rig)
+    shapes = character.names
     solved = series.read(options.solution, tuple(LIMITS))
     asked = channels.read(options.channels, shapes, *LIMITS[solved.meta["kind"]])
     gaps = np.flatnonzero(np.diff(solved.frame) != 1)
@@ -199,7 +203,7 @@ def main(argv: Sequence[str]) -> None:
     scaled = asked.gain * filled[:, :-1]
     # an addition of zero would lose the sign of a zero
     adjusted = np.where(asked.offset == 0.0, scaled, scaled + asked.offset)
-    filled[:, :-1] = _smoothed(options, adjusted, solved, rate, asked)
+    filled[:, :-1] = _smoothed(options, adjusted, solved, rate, asked, character.mask_index)
 
     span = int(solved.frame[0]), len(solved.frame), solved.rate, rate
     frames = resample.covered_frames(*span)
