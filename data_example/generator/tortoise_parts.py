@@ -13,16 +13,18 @@ SPOKES, BALL_ANGLES = 10, np.array([0.30, 0.34, 0.66, 0.72, 1.55])
 LIDS, LID_ROWS = 14, 6
 LID_ANGLE = 2 * np.pi * np.arange(LIDS) / LIDS
 LID_ACROSS, LID_UP = -np.cos(LID_ANGLE), np.arange(LIDS) > LIDS // 2
+# the directions in which the lids end behind the ball
+ROOT = np.stack([0.81 * LID_ACROSS, -0.81 * np.sin(LID_ANGLE), 0 * LID_ANGLE - 0.59], axis=1)
 UPPER, UNDER, SHUT = 0.40, -0.62, -0.34
 RIDGE, RIDGE_ROWS = 7, 5
 TONGUE = (4, 5)
 SHELL_COLUMNS = 20
 # z, half width, middle, half height of each ring of the shell, from its dark inside to its end
 SHELL = np.array([
-    (-12.0, 3.0, -14.5, 2.0), (-6.5, 6.2, -13.4, 4.4), (-4.0, 6.6, -13.2, 4.9),
-    (-3.3, 7.4, -13.0, 5.6), (-4.2, 10.0, -12.4, 7.4), (-5.6, 9.8, -12.0, 7.4),
-    (-7.4, 10.3, -11.2, 8.5), (-11.5, 10.4, -10.8, 9.0), (-16.0, 8.8, -11.6, 7.6),
-    (-19.5, 4.0, -13.0, 3.8),
+    (-16.2, 3.0, -14.5, 2.0), (-10.7, 6.2, -13.4, 4.4), (-8.2, 6.6, -13.2, 4.9),
+    (-7.5, 7.4, -13.0, 5.6), (-8.4, 10.0, -12.4, 7.4), (-9.8, 9.8, -12.0, 7.4),
+    (-11.6, 10.3, -11.2, 8.5), (-15.7, 10.4, -10.8, 9.0), (-20.2, 8.8, -11.6, 7.6),
+    (-23.7, 4.0, -13.0, 3.8),
 ])  # fmt: skip
 
 
@@ -56,6 +58,8 @@ def ball(out, p):
     around = 2 * np.pi * np.arange(SPOKES) / SPOKES
     a, r = np.meshgrid(BALL_ANGLES, around, indexing="ij")
     rings = np.stack([np.sin(a) * np.cos(r), np.sin(a) * np.sin(r), np.cos(a)], -1)
+    # behind the lids it is a little smaller, lest it come through them
+    rings[-1] *= 0.95
     points = np.vstack([rings.reshape(-1, 3), [0, 0, 1]]) * BALL
     return _to_head(_look(points, out, p), out)
 
@@ -80,8 +84,7 @@ def lids(name, out, p):
     meet = SHUT + slant
     fringe = (fringe + blink * (meet - fringe)) * arch
     # heavy lids: what is drawn up folds over the edge, what comes down bulges
-    crease = np.where(LID_UP, 1.12, -0.98) * np.maximum(1 - s * s, 0) ** 0.5
-    root = np.where(LID_UP, 1.75, -1.6) * np.maximum(1 - s * s, 0) ** 0.5
+    crease = np.where(LID_UP, 1.18, -1.04) * np.maximum(1 - s * s, 0) ** 0.5
     heavy = np.where(LID_UP, 0.26, 0.12)
     rows = [
         _toward(1.00 * s, fringe) * (BALL + 0.06),
@@ -89,8 +92,8 @@ def lids(name, out, p):
         _toward(1.04 * s, fringe + 0.35 * (crease - fringe))
         * (BALL + 0.52 + 1.1 * heavy * arch)[:, None],
         _toward(1.12 * s, fringe + 0.75 * (crease - fringe)) * (BALL + 0.50),
-        _toward(1.36 * s, crease) * (BALL + 0.42),
-        _toward(1.95 * s, root) * (BALL + 0.15),
+        _toward(1.36 * s, crease) * (BALL + 0.46),
+        ROOT * (BALL + 0.40),
     ]
     return _to_head(np.concatenate(rows), out)
 
@@ -100,14 +103,17 @@ def ridge(name, out, p):
     t = np.linspace(-1, 1, RIDGE)
     inner, outer = (1 - t) / 2, (1 + t) / 2
     up = p[f"inner_{name}"] * inner**1.2 + p[f"outer_{name}"] * outer**1.2
-    azimuth = out * (1.18 * t - 0.10 - 0.30 * p["knit"] * inner)
-    elevation = 0.94 - 0.20 * t * t - 0.08 * inner + 0.50 * up - 0.38 * p["knit"] * inner**1.4
+    azimuth = out * (1.26 * t - 0.10 - 0.30 * p["knit"] * inner)
+    elevation = 0.94 - 0.20 * t * t - 0.08 * inner + 0.30 * up - 0.38 * p["knit"] * inner**1.4
     taper = np.maximum(1 - np.abs(t) ** 3, 0) ** 0.5 * (1 + 0.15 * inner)
     reach = BALL + 0.55 + 0.5 * taper
-    rows = []
-    for rise, depth in ((-0.10, -0.55), (-0.17, 0.10), (-0.02, 0.42), (0.16, 0.12), (0.22, -0.7)):
+    # the roll's back edge stays on the lid, as if skin stretched between them
+    rest = 0.82 - 0.20 * t * t
+    rows = [_toward(out * 1.26 * t, rest) * (BALL + 0.35)]
+    for rise, depth in ((-0.20, 0.10), (-0.03, 0.46), (0.19, 0.14), (0.42, -1.0)):
         swell = reach + depth * (0.35 + 0.65 * taper)
         rows.append(_toward(azimuth, elevation + rise * taper) * swell[:, None])
+        rows[-1][:, 1] += 0.55 * up
     return _to_head(np.concatenate(rows), out)
 
 

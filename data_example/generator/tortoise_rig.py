@@ -19,7 +19,6 @@ PUPIL, IRIS, IRIS_RIM, WHITE = (
 )
 SCUTE, SEAM, BELLY = (0.78, 0.54, 0.26), (0.34, 0.21, 0.12), (0.88, 0.76, 0.47)
 TONGUE = (0.88, 0.46, 0.44)
-MASKS = ("upper", "mouth", "eyes")
 
 
 class Tortoise(NamedTuple):
@@ -28,7 +27,7 @@ class Tortoise(NamedTuple):
     pose : function from a dict of parameters to (V, 3) float array
     faces : (F, 4) int array
     colours : (V, 3) float array, 0..1
-    masks : (3, V) float array, rows MASKS, a partition of unity
+    masks : (3, V) float array, rows extreme_files.MASKS, a partition of unity
     slices : dict, piece -> slice of its vertices
     """
 
@@ -122,7 +121,7 @@ def _colours(rest, seed):
     """Return the colours of each kind of piece."""
     ball = np.repeat([PUPIL, IRIS, IRIS_RIM, WHITE, WHITE], parts.SPOKES, axis=0)
     lid = np.repeat([LID_EDGE, LID_EDGE, LID, LID, CROWN, CROWN], parts.LIDS, axis=0)
-    ridge = np.repeat([CROWN, RIDGE, (0.46, 0.48, 0.28), RIDGE, CROWN], parts.RIDGE, axis=0)
+    ridge = np.repeat([LID, RIDGE, (0.46, 0.48, 0.28), RIDGE, CROWN], parts.RIDGE, axis=0)
     return {
         "skin": _skin_colours(rest, seed),
         "ball": np.concatenate([ball, [PUPIL]]),
