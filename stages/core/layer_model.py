@@ -184,5 +184,11 @@ def project(model: Model, frame: np.ndarray) -> Quadratic | None:
     else:
         gram = model.gram - _gram(model.basis[missing], model.masks[:, missing], model.pairs)
         spanned = np.linalg.solve(gram + RIDGE * model.scale * np.eye(len(gram)), linear)
-    span = energy - 2.0 * (linear @ spanned) + spanned @ gram @ spanned
+    span = data(Quadratic(energy, linear, gram, 0.0), spanned)
     return Quadratic(energy, linear, gram, max(span, 0.0))
+
+
+def data(quadratic: Quadratic, displacements: np.ndarray) -> float:
+    """Return the data term of displacements u (R * K,)."""
+    curved = quadratic.gram @ displacements - 2.0 * quadratic.linear
+    return float(quadratic.energy + displacements @ curved)

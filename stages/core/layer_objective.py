@@ -64,6 +64,5 @@ def at(
 def value(model: layer_model.Model, objective: Objective, point: np.ndarray) -> float:
     """Return the objective at a point."""
     u = point[model.first] * point[model.second]
-    energy, linear, gram, _ = objective.quadratic
     pulled = np.sum(objective.pull * (point - objective.target) ** 2)
-    return float(energy - 2.0 * (linear @ u) + u @ gram @ u + pulled + objective.fixed)
+    return float(layer_model.data(objective.quadratic, u) + pulled + objective.fixed)

@@ -9,7 +9,7 @@ coefficients, ``|a_j - t_j|^2 >= sum_l share_lj w_lj^2 |a_j - t_j|^2``, the latt
 import numba
 import numpy as np
 
-from stages.core import layer_kernel, layer_model
+from stages.core import layer_kernel, layer_model, layer_objective
 
 
 @numba.njit(cache=True)
@@ -38,7 +38,7 @@ def _assemble(gram, linear, layer, pull, target, share, weights):
 
 @numba.njit(cache=True)
 def _bound(hessian, slope, group, point):
-    """Return value and Frank-Wolfe bound of a convex quadratic over simplices."""
+    """Return the Frank-Wolfe lower bound of a convex quadratic over simplices."""
     curved = np.zeros(len(point))
     for i in range(len(point)):
         if point[i] != 0.0:
@@ -51,14 +51,12 @@ def _bound(hessian, slope, group, point):
         value += (0.5 * curved[i] + slope[i]) * point[i]
         along += gradient * point[i]
         least[group[i]] = min(least[group[i]], gradient)
-    return value, value + least.sum() - along
+    return value + least.sum() - along
 
 
 def solve(
     model: layer_model.Model,
-    quadratic: layer_model.Quadratic,
-    pull: np.ndarray,
-    target: np.ndarray,
+    objective: layer_objective.Objective,
     share: np.ndarray,
     start: np.ndarray,
 ) -> tuple[np.ndarray, float]:
@@ -69,13 +67,12 @@ def solve(
 
     Parameters
     ----------
-    model, quadratic : see `layer_model`
-    pull, target : (R * J + K,) float array
-        terms ``pull_i (z_i - target_i)^2`` on weights and coefficients; pulls are alike in a layer
+    model, objective : see `layer_model` and `layer_objective`; pulls are alike within a layer
     share : (R * J,) float array
         how a layer's pull on coefficients is shared among the masks, at most one in sum
     start : (R * K,) float array, on its simplices
     """
+    quadratic, pull, target, fixed = objective
     weights = len(share)
     hessian, slope = _assemble(
         quadratic.gram, quadratic.linear, model.layer, pull, target, share, weights
@@ -89,9 +86,9 @@ def solve(
         1e-9 * model.scale,
         layer_model.RIDGE * model.scale,
     )
-    _, bound = _bound(hessian, slope, model.mask_group, point)
-    fixed = quadratic.energy + np.sum((pull * target**2)[:weights])
-    return point, bound + fixed - 1e-12 * max(fixed, model.scale)
+    fixed += quadratic.energy + np.sum((pull * target**2)[:weights])
+    rounding = 1e-12 * max(quadratic.energy, model.scale)
+    return point, _bound(hessian, slope, model.mask_group, point) + fixed - rounding
 
 
 def factors(

@@ -7,23 +7,12 @@ Kholgade 2011, eq. 7 in finite terms; weights w (R, J) on a simplex under each m
         + l (|w - w_before|^2 + |a - a_before|^2)
 """
 
-from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
 
-from stages.core import (
-    layer_amplitude,
-    layer_kernel,
-    layer_model,
-    layer_objective,
-    layer_relaxation,
-    layer_starts,
-)
+from stages.core import layer_amplitude, layer_model, layer_objective, layer_search
 
-TOLERANCE = 1e-12
-CLOSE_ENOUGH = 1e-9
-DRAWS = 4
 SOFTNESS = 1e-3
 
 
@@ -91,102 +80,84 @@ def temporal_at(rate: float, lambda_at_30: float) -> float:
     return float(kept / (1.0 - kept))
 
 
-def _descend(
-    model: layer_model.Model, given: layer_objective.Objective, start: np.ndarray
-) -> tuple:
-    """Return the objective and the point to which the solver comes from a start."""
-    point = start.copy()
-    value = layer_kernel.descend(
-        given.quadratic.gram,
-        model.pairs,
-        given.quadratic.linear,
-        given.pull,
-        given.target,
-        model.first,
-        model.second,
-        model.group,
-        point,
-        TOLERANCE * model.scale,
-        layer_model.RIDGE * model.scale,
-    )
-    point /= np.bincount(model.group, point)[model.group]
-    return value + given.quadratic.energy + given.fixed, point
-
-
-def _best(
-    model: layer_model.Model, given: layer_objective.Objective, previous: State | None
-) -> tuple:
-    """Return objective, point, bound and relaxed displacements of the best of several starts.
-
-    The last frame's own solution is kept unless another is better by more than rounding, so that
-    nothing flickers between equals.
-    """
-    regions, layers, _ = model.sizes
-    enough = CLOSE_ENOUGH * model.scale
-    if previous is None:
-        starts = layer_starts.draws(model, DRAWS, 0)
-        relaxed = np.repeat(1.0 / len(model.layer), len(model.first))
-        share = np.full(regions * layers, 1.0 / regions)
-        value, point = _descend(model, given, starts[0])
-    else:
-        starts = []
-        relaxed = previous.relaxed
-        before = np.concatenate([previous.weights.ravel(), previous.coefficients])
-        value, point = _descend(model, given, before)
-        heavy = point[: regions * layers].reshape(regions, layers).argmax(axis=0)
-        share = (np.arange(regions)[:, None] == heavy).astype(float).ravel()
-    relaxed, bound = layer_relaxation.solve(
-        model, given.quadratic, given.pull, given.target, share, relaxed
-    )
-    bound += given.fixed
-    if value - bound > enough:
-        held = point[regions * layers :]
-        alone = layer_starts.singles(model, given.quadratic, given.pull, given.target, held, enough)
-        starts += [
-            start for start in alone if layer_objective.value(model, given, start) < value - enough
-        ]
-        for start in [layer_relaxation.factors(model, relaxed, held), *starts]:
-            other, place = _descend(model, given, start)
-            if other < value - enough:
-                value, point = other, place
-    return value, point, bound, relaxed
-
-
-def _amplitudes(model, settings, quadratic, previous, u, closeness) -> np.ndarray:
+def _amplitudes(
+    model: layer_model.Model,
+    settings: Settings,
+    quadratic: layer_model.Quadratic,
+    point: np.ndarray,
+    previous: State | None,
+) -> np.ndarray:
     """Return the amplitude of each layer, one where the bounds are hard."""
     layers = model.sizes[1]
+    ones = np.ones(layers)
     if settings.beyond == 0.0:
-        return np.ones(layers)
-    of_layer = np.tile(model.layer, len(model.masks))
-    parts = np.where(of_layer == np.arange(layers)[:, None], u, 0.0)
-    data = 1.0 - closeness
-    held = 0.0 if previous is None else settings.temporal
+        return ones
+    of_layer = np.tile(model.layer, len(model.masks)) == np.arange(layers)[:, None]
+    parts = np.where(of_layer, point[model.first] * point[model.second], 0.0)
     slack = SOFTNESS * model.scale
-    before = np.ones(layers) if previous is None else previous.amplitudes
+    held = 0.0 if previous is None else settings.temporal
+    before = ones if previous is None else previous.amplitudes
     return layer_amplitude.solve(
-        data * (parts @ quadratic.gram @ parts.T),
-        data * (parts @ quadratic.linear),
+        parts @ quadratic.gram @ parts.T,
+        parts @ quadratic.linear,
         slack + held,
         (slack + held * before) / (slack + held),
         settings.beyond,
     )
 
 
-def _nothing(model: layer_model.Model) -> Solution:
+def check(model: layer_model.Model, settings: Settings, frames, closeness) -> None:
+    """Refuse sequences that do not fit the model and numbers that mean nothing."""
+    if np.shape(frames)[1:] != model.basis.shape[:1] or np.shape(closeness) != (len(frames),):
+        raise ValueError(
+            f"expected frames (T, {len(model.basis)}) and closeness (T,), got {np.shape(frames)}"
+            f" and {np.shape(closeness)}"
+        )
+    if not len(frames):
+        raise ValueError(f"expected at least one frame, got {np.shape(frames)}")
+    if not (0.0 <= settings.temporal < np.inf and 0.0 <= settings.beyond < np.inf):
+        raise ValueError(f"temporal and beyond must be at least 0 and finite, got {settings}")
+    near = np.asarray(closeness)
+    if not ((near >= 0.0) & (near <= 1.0)).all():
+        raise ValueError(f"closeness must be in 0..1, got {near.min()} to {near.max()}")
+    if model.lip_mask < 0 and near.any():
+        raise ValueError(f"closeness of {near.max()} needs a lip mask, which the model has not")
+
+
+def describe(
+    model: layer_model.Model,
+    quadratic: layer_model.Quadratic,
+    point: np.ndarray,
+    amplitudes: np.ndarray,
+    objective: float,
+    bound: float,
+) -> Solution:
+    """Return a frame's solution, given the solver's point."""
+    regions, layers, _ = model.sizes
+    hard = point[model.first] * point[model.second]
+    soft = hard * np.tile(amplitudes[model.layer], regions)
+    outside = np.sqrt(max(layer_model.data(quadratic, hard) - quadratic.span, 0.0))
+    return Solution(
+        point[: regions * layers].reshape(regions, layers),
+        point[regions * layers :],
+        amplitudes,
+        objective,
+        min(bound, objective),
+        max(layer_model.data(quadratic, soft), 0.0),
+        outside,
+    )
+
+
+def nothing(model: layer_model.Model) -> Solution:
     """Return the solution of a frame of which too little was observed."""
     regions, layers, count = model.sizes
     parts = np.full((regions, layers), np.nan), np.full(count, np.nan), np.full(layers, np.nan)
     return Solution(*parts, *(np.nan,) * 4)
 
 
-def _check(model: layer_model.Model, settings: Settings, closeness: float) -> None:
-    """Refuse settings and a closeness that mean nothing."""
-    if not (0.0 <= settings.temporal < np.inf and 0.0 <= settings.beyond < np.inf):
-        raise ValueError(f"temporal and beyond must be at least 0 and finite, got {settings}")
-    if not 0.0 <= closeness <= 1.0:
-        raise ValueError(f"closeness must be in 0..1, got {closeness}")
-    if closeness > 0.0 and model.lip_mask < 0:
-        raise ValueError(f"closeness {closeness} needs a lip mask, which the model has not")
+def stacked(solutions: list[Solution]) -> Solution:
+    """Return frames' solutions as one of arrays over the frames."""
+    return Solution(*(np.array(part) for part in zip(*solutions, strict=True)))
 
 
 def solve_frame(
@@ -216,38 +187,27 @@ def solve_frame(
     ValueError
         if arrays do not fit the model or a number is out of range
     """
-    _check(model, settings, closeness)
+    check(model, settings, np.asarray(frame)[None], np.array([closeness]))
     quadratic = layer_model.project(model, frame)
     if quadratic is None:
-        return _nothing(model), previous
-    regions, layers, _ = model.sizes
-    before, held = None, 0.0
+        return nothing(model), previous
+    before, relaxed, held = None, None, 0.0
     if previous is not None:
         before = np.concatenate([previous.weights.ravel(), previous.coefficients])
-        held = settings.temporal
-    given = layer_objective.at(model, quadratic, closeness, held, before)
-    value, point, bound, relaxed = _best(model, given, previous)
-    weights, coefficients = point[: regions * layers], point[regions * layers :]
-    u = point[model.first] * point[model.second]
-    hard = quadratic.energy - 2.0 * (quadratic.linear @ u) + u @ quadratic.gram @ u
-    amplitudes = _amplitudes(model, settings, quadratic, previous, u, closeness)
-    data = hard
-    if settings.beyond > 0.0:
-        u = u * amplitudes[np.tile(model.layer, regions)]
-        data = quadratic.energy - 2.0 * (quadratic.linear @ u) + u @ quadratic.gram @ u
-    outside = np.sqrt(max(hard - quadratic.span, 0.0))
-    weights = weights.reshape(regions, layers)
-    solution = Solution(
-        weights, coefficients, amplitudes, value, min(bound, value), max(data, 0.0), outside
-    )
-    return solution, State(weights, coefficients, amplitudes, relaxed)
+        relaxed, held = previous.relaxed, settings.temporal
+    objective = layer_objective.at(model, quadratic, closeness, held, before)
+    found = layer_search.best(model, objective, before, relaxed)
+    amplitudes = _amplitudes(model, settings, objective.quadratic, found.point, previous)
+    solution = describe(model, quadratic, found.point, amplitudes, found.value, found.bound)
+    state = State(solution.weights, solution.coefficients, amplitudes, found.relaxed)
+    return solution, state
 
 
 def solve(
     model: layer_model.Model,
     settings: Settings,
-    frames: Iterable[np.ndarray],
-    closeness: Iterable[float],
+    frames: np.ndarray,
+    closeness: np.ndarray,
 ) -> Solution:
     """Solve a sequence, each frame from the last: `solve_frame` over and over.
 
@@ -264,17 +224,11 @@ def solve(
     Raises
     ------
     ValueError
-        if arrays do not fit the model or each other
+        if arrays do not fit the model or each other, or a number is out of range
     """
-    if np.ndim(frames) != 2 or np.shape(closeness) != np.shape(frames)[:1]:
-        raise ValueError(
-            f"expected frames (T, D) and closeness (T,), got {np.shape(frames)} and"
-            f" {np.shape(closeness)}"
-        )
+    check(model, settings, frames, closeness)
     solutions, state = [], None
     for frame, near in zip(frames, closeness, strict=True):
         solution, state = solve_frame(model, settings, frame, float(near), state)
         solutions.append(solution)
-    if not solutions:
-        raise ValueError(f"expected at least one frame, got {np.shape(frames)}")
-    return Solution(*(np.array(part) for part in zip(*solutions, strict=True)))
+    return stacked(solutions)

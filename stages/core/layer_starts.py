@@ -2,14 +2,12 @@
 
 import numpy as np
 
-from stages.core import layer_kernel, layer_model
+from stages.core import layer_kernel, layer_model, layer_objective
 
 
 def singles(
     model: layer_model.Model,
-    quadratic: layer_model.Quadratic,
-    pull: np.ndarray,
-    target: np.ndarray,
+    objective: layer_objective.Objective,
     coefficients: np.ndarray,
     tolerance: float,
 ) -> list[np.ndarray]:
@@ -17,16 +15,15 @@ def singles(
 
     Parameters
     ----------
-    model, quadratic : see `layer_model`
-    pull, target : (R * J + K,) float array, see `layer_kernel`
+    model, objective : see `layer_model` and `layer_objective`
     coefficients : (K,) float array, kept where a layer has no weight
     tolerance : float, of the multipliers
     """
     regions, layers, count = model.sizes
     shape = (regions, count, regions, count)
-    gram = quadratic.gram.reshape(shape).sum(axis=(0, 2))
-    linear = quadratic.linear.reshape(regions, count).sum(axis=0)
-    pull, target = pull[regions * layers :], target[regions * layers :]
+    gram = objective.quadratic.gram.reshape(shape).sum(axis=(0, 2))
+    linear = objective.quadratic.linear.reshape(regions, count).sum(axis=0)
+    pull, target = (part[regions * layers :] for part in (objective.pull, objective.target))
     points = []
     for j in range(layers):
         own = np.flatnonzero(model.layer == j)

@@ -1,0 +1,96 @@
+"""Look for the layers of one frame from several starts, and say how much could be better."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from stages.core import (
+    layer_kernel,
+    layer_model,
+    layer_objective,
+    layer_relaxation,
+    layer_starts,
+)
+
+TOLERANCE = 1e-12
+CLOSE_ENOUGH = 1e-9
+DRAWS = 4
+
+
+class Found(NamedTuple):
+    """Hold what a search came to.
+
+    Attributes
+    ----------
+    value : float, the objective
+    point : (R * J + K,) float array
+    bound : float, no point has a lower objective
+    relaxed : (R * K,) float array, displacements of the relaxation
+    """
+
+    value: float
+    point: np.ndarray
+    bound: float
+    relaxed: np.ndarray
+
+
+def descend(
+    model: layer_model.Model, objective: layer_objective.Objective, start: np.ndarray
+) -> tuple[float, np.ndarray]:
+    """Return the objective and the point to which feasible SQP comes from a start."""
+    point = start.copy()
+    value = layer_kernel.descend(
+        objective.quadratic.gram,
+        model.pairs,
+        objective.quadratic.linear,
+        objective.pull,
+        objective.target,
+        model.first,
+        model.second,
+        model.group,
+        point,
+        TOLERANCE * model.scale,
+        layer_model.RIDGE * model.scale,
+    )
+    point /= np.bincount(model.group, point)[model.group]
+    return value + objective.quadratic.energy + objective.fixed, point
+
+
+def best(
+    model: layer_model.Model,
+    objective: layer_objective.Objective,
+    before: np.ndarray | None,
+    relaxed: np.ndarray | None,
+) -> Found:
+    """Return the best that was found from the last frame's point and from others.
+
+    The others are tried where the bound leaves room: the relaxation, each layer alone if that is
+    better already, and on the first frame draws. The last frame's own descendant is kept unless
+    another is better by more than rounding, so that nothing flickers between equals.
+
+    Parameters
+    ----------
+    model, objective : see `layer_model` and `layer_objective`
+    before : (R * J + K,) float array, the last frame's point; None on the first frame
+    relaxed : (R * K,) float array, the last frame's relaxation; None on the first frame
+    """
+    regions, layers, _ = model.sizes
+    enough = CLOSE_ENOUGH * model.scale
+    starts = layer_starts.draws(model, DRAWS, 0) if before is None else [before]
+    value, point = descend(model, objective, starts[0])
+    heavy = point[: regions * layers].reshape(regions, layers).argmax(axis=0)
+    share = (np.arange(regions)[:, None] == heavy).astype(float).ravel()
+    if relaxed is None:
+        relaxed = np.full(len(model.first), 1.0 / len(model.layer))
+    relaxed, bound = layer_relaxation.solve(model, objective, share, relaxed)
+    if value - bound > enough:
+        held = point[regions * layers :]
+        starts.append(layer_relaxation.factors(model, relaxed, held))
+        for alone in layer_starts.singles(model, objective, held, enough):
+            if before is None or layer_objective.value(model, objective, alone) < value - enough:
+                starts.append(alone)
+        for start in starts[1:]:
+            other, place = descend(model, objective, start)
+            if other < value - enough:
+                value, point = other, place
+    return Found(value, point, bound, relaxed)
