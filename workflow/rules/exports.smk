@@ -226,3 +226,64 @@ rule export_maya:
         " --script {output.script:q}"
         " --anim {output.anim:q}"
         " 2> {log:q}"
+
+
+use rule export_livelink as delivery_livelink with:
+    input:
+        rig=delivery_rig_of,
+        weights="results/takes/{shot}/{character}/delivery.parquet",
+        names=data_table("shape_names.tsv"),
+    output:
+        livelink="results/takes/{shot}/{character}/delivery/livelink.csv",
+    log:
+        "logs/delivery_livelink/{shot}/{character}.log",
+    benchmark:
+        "logs/delivery_livelink/{shot}/{character}.tsv"
+    wildcard_constraints:
+        character=delivered_on_blendshapes(),
+
+
+use rule export_maya as delivery_maya with:
+    input:
+        rig=delivery_rig_of,
+        weights="results/takes/{shot}/{character}/delivery.parquet",
+        template=template("apply_in_maya.py"),
+    output:
+        script="results/takes/{shot}/{character}/delivery/maya.py",
+        anim="results/takes/{shot}/{character}/delivery/maya.anim",
+    log:
+        "logs/delivery_maya/{shot}/{character}.log",
+    benchmark:
+        "logs/delivery_maya/{shot}/{character}.tsv"
+    wildcard_constraints:
+        character=delivered_on_blendshapes(),
+
+
+use rule export_blender as delivery_blender with:
+    input:
+        rig=delivery_rig_of,
+        weights="results/takes/{shot}/{character}/delivery.parquet",
+        template=template("apply_in_blender.py"),
+    output:
+        script="results/takes/{shot}/{character}/delivery/blender.py",
+    log:
+        "logs/delivery_blender/{shot}/{character}.log",
+    benchmark:
+        "logs/delivery_blender/{shot}/{character}.tsv"
+    wildcard_constraints:
+        character=delivered_on_blendshapes(),
+
+
+use rule export_curves as delivery_curves with:
+    input:
+        rig=delivery_rig_of,
+        weights="results/takes/{shot}/{character}/delivery.parquet",
+    output:
+        key_table="results/takes/{shot}/{character}/delivery/keys.csv",
+        error="results/takes/{shot}/{character}/delivery/keys.json",
+    log:
+        "logs/delivery_curves/{shot}/{character}.log",
+    benchmark:
+        "logs/delivery_curves/{shot}/{character}.tsv"
+    wildcard_constraints:
+        character=delivered_on_blendshapes(),

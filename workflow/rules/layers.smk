@@ -103,6 +103,78 @@ rule assemble_simplices:
         " 2> {log:q}"
 
 
+rule transfer_layers:
+    input:
+        simplices=simplices_of,
+        expression="results/shots/{shot}/expression.parquet",
+    output:
+        layers="results/takes/{shot}/{character}/layers.parquet",
+    log:
+        "logs/transfer_layers/{shot}/{character}.log",
+    benchmark:
+        "logs/transfer_layers/{shot}/{character}.tsv"
+    wildcard_constraints:
+        character=layer_characters("solver", "certified"),
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("transfer_layers"),
+        lip_points=session_cell("lip_points"),
+        lip_mask=character_cell("lip_mask"),
+        lip_sigma=character_cell("lip_sigma"),
+        temporal=character_cell("temporal"),
+        beyond=character_cell("beyond"),
+    shell:
+        "python -m stages.transfer_layers"
+        " --simplices {input.simplices:q}"
+        " --expression {input.expression:q}"
+        " --lip-points={params.lip_points:q}"
+        " --lip-mask {params.lip_mask:q}"
+        " --lip-sigma {params.lip_sigma}"
+        " --temporal {params.temporal}"
+        " --beyond {params.beyond}"
+        " --layers {output.layers:q}"
+        " 2> {log:q}"
+
+
+rule transfer_layers_published:
+    input:
+        simplices=simplices_of,
+        expression="results/shots/{shot}/expression.parquet",
+    output:
+        layers="results/takes/{shot}/{character}/layers.parquet",
+    log:
+        "logs/transfer_layers_published/{shot}/{character}.log",
+    benchmark:
+        "logs/transfer_layers_published/{shot}/{character}.tsv"
+    wildcard_constraints:
+        character=layer_characters("solver", "published"),
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("transfer_layers_published"),
+        lip_points=session_cell("lip_points"),
+        lip_mask=character_cell("lip_mask"),
+        lip_sigma=character_cell("lip_sigma"),
+        temporal=character_cell("temporal"),
+        beyond=character_cell("beyond"),
+        seed=config["seed"],
+    shell:
+        "python -m stages.transfer_layers_published"
+        " --simplices {input.simplices:q}"
+        " --expression {input.expression:q}"
+        " --lip-points={params.lip_points:q}"
+        " --lip-mask {params.lip_mask:q}"
+        " --lip-sigma {params.lip_sigma}"
+        " --temporal {params.temporal}"
+        " --beyond {params.beyond}"
+        " --seed {params.seed}"
+        " --layers {output.layers:q}"
+        " 2> {log:q}"
+
+
 rule direct_layers:
     input:
         ancient(present([directing_table()])),
@@ -133,6 +205,60 @@ rule direct_layers:
         " --shot {wildcards.shot:q}"
         " --extremes {input.extremes:q}"
         " --directed {output.directed:q}"
+        " 2> {log:q}"
+
+
+use rule assemble_blendshapes as assemble_delivery with:
+    input:
+        character_source("neutral"),
+        shapes=blendshapes_of_poses,
+    output:
+        rig="results/cast/{actor}/{character}/delivery_rig.npz",
+    log:
+        "logs/assemble_delivery/{actor}/{character}.log",
+    benchmark:
+        "logs/assemble_delivery/{actor}/{character}.tsv"
+    wildcard_constraints:
+        character=delivered_on_blendshapes(),
+    params:
+        code=code_of("assemble_blendshapes"),
+        neutral=character_path("neutral"),
+        shape_folder=delivery_folder,
+        unit=character_cell("unit"),
+        up_axis=character_cell("up_axis"),
+        pivot=character_cell("pivot"),
+        face_unit=character_cell("face_unit"),
+
+
+rule project_blendshapes:
+    input:
+        character_source("channels"),
+        rig=rig_of,
+        weights="results/takes/{shot}/{character}/weights.parquet",
+        delivery_rig=delivery_rig_of,
+    output:
+        delivery="results/takes/{shot}/{character}/delivery.parquet",
+        csv="results/takes/{shot}/{character}/delivery.csv",
+    log:
+        "logs/project_blendshapes/{shot}/{character}.log",
+    benchmark:
+        "logs/project_blendshapes/{shot}/{character}.tsv"
+    wildcard_constraints:
+        character=delivered_on_blendshapes(),
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("project_blendshapes"),
+        channels=character_path("channels"),
+    shell:
+        "python -m stages.project_blendshapes"
+        " --rig {input.rig:q}"
+        " --weights {input.weights:q}"
+        " --delivery-rig {input.delivery_rig:q}"
+        " --channels={params.channels:q}"
+        " --delivery {output.delivery:q}"
+        " --csv {output.csv:q}"
         " 2> {log:q}"
 
 
