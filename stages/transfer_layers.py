@@ -80,7 +80,7 @@ def run(options: argparse.Namespace, solver: str, solve: Solve) -> None:
         "residual": _residual(made, solution, offsets),
         "outside": solution.outside,
         "objective": solution.objective,
-        "gap": solution.objective - solution.bound,
+        "gap": np.where(np.isfinite(solution.bound), solution.objective - solution.bound, np.nan),
         "lip_bias": closeness,
     }
     solved = np.isfinite(solution.objective)
@@ -128,7 +128,7 @@ def _solve(
         solution, state = layer_solver.solve_frame(model, settings, frame, float(near), state)
         solutions.append(solution)
         progress.step()
-    return layer_solver.Solution(*(np.array(part) for part in zip(*solutions, strict=True)))
+    return layer_solver.stacked(solutions)
 
 
 def _residual(

@@ -5,6 +5,7 @@ import layered_actor
 import numpy as np
 import pytest
 
+from stages import transfer_layers_published
 from stages.core import layer_composition
 from stages.files import errors, layers, series, simplices
 
@@ -166,3 +167,17 @@ def test_the_same_input_gives_the_same_bytes(actor):
     actor.assemble()
     first = actor.transfer(temporal=0.05).read_bytes()
     assert actor.transfer(temporal=0.05).read_bytes() == first
+
+
+def test_the_published_sequence_finds_the_planted_layers_too(tmp_path):
+    actor = layered_actor.LayeredActor(tmp_path, frames=4)
+    made = simplices.read(actor.assemble())
+    path = actor.transfer(transfer_layers_published, seed=0)
+    found = layers.read(path)
+    np.testing.assert_allclose(composed(made, found), actor.offsets["play"], atol=0.02)
+    assert np.isnan(found.measures["gap"]).all() and np.all(found.amplitudes == 1)
+    assert series.read(path, "layers").meta["solver"] == "published"
+    certified = layers.read(actor.transfer())
+    assert np.all(certified.measures["objective"] <= found.measures["objective"] + 1e-6)
+    with pytest.raises(errors.InputError, match=r"--beyond: is 0\.2: the published solver stays"):
+        actor.transfer(transfer_layers_published, seed=0, beyond=0.2)
