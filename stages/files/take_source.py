@@ -170,9 +170,10 @@ def _tracked_moments(
 
 
 def _with_markers(moment: preview.Moment, markers: _Markers | None) -> preview.Moment:
-    """Put the markers beside a picture; they then give the confidence."""
+    """Put the markers beside a picture; the confidence is the lower of the two."""
     if markers is None:
         return moment
     row = markers.row(moment.time_s)
     both = np.concatenate([moment.picture, markers.paint(row)], axis=1)
-    return moment._replace(picture=both, confidence=float(markers.confidence[row]))
+    lower = min(moment.confidence, float(markers.confidence[row]))
+    return moment._replace(picture=both, confidence=lower)
