@@ -100,8 +100,7 @@ def main(argv: Sequence[str]) -> None:
     neutral = sculpts.read_neutral(options.neutral)
     painted = [name.strip() for name in options.painted_masks.split(",") if name.strip()]
     masks, values = character_masks.read(options.masks, painted, neutral)
-    shapes = _shapes(options.shapes)
-    offsets = {extreme: pose_files.read(path, neutral, shapes) for extreme, path in files.items()}
+    offsets = pose_files.read(files, neutral, _shapes(options.shapes))
     pairs = list(_pairs(masks, values, offsets))
     if not pairs:
         message = "no pose differs from the neutral: save the posed meshes, not copies of it"

@@ -49,31 +49,46 @@ def by_name(
     return {extreme: found[extreme] for extreme in known if extreme in found}
 
 
-def read(path: str | Path, neutral: sculpts.Pose, shapes: Mapping[str, str]) -> np.ndarray:
-    """Read how a pose differs from the neutral.
+def read(
+    paths: Mapping[tuple[str, str], str], neutral: sculpts.Pose, shapes: Mapping[str, str]
+) -> dict[tuple[str, str], np.ndarray]:
+    """Read how poses differ from the neutral.
 
     Parameters
     ----------
-    path : the pose
+    paths : (layer, name) -> pose
     neutral : the character's neutral
     shapes : name -> file of the artist's blendshapes
 
     Returns
     -------
-    (V, D) float array
+    (layer, name) -> (V, D) float array
 
     Raises
     ------
     errors.InputError
-        if the file does not fit the neutral, or names a blendshape that is not there
+        if a file does not fit the neutral, or names a blendshape that is not there
     """
-    if neutral.is_controls or Path(path).suffix.lower() != sculpts.CONTROL_SUFFIX:
-        return sculpts.read_sculpt(path, neutral)[0] - neutral.coordinates
-    offset = np.zeros_like(neutral.coordinates)
-    for name, value in _read_mix(path, shapes).items():
-        shape, _ = sculpts.read_sculpt(shapes[name], neutral)
-        offset += value * (shape - neutral.coordinates)
-    return offset
+    mixes = {
+        extreme: _read_mix(path, shapes)
+        for extreme, path in paths.items()
+        if Path(path).suffix.lower() == sculpts.CONTROL_SUFFIX and not neutral.is_controls
+    }
+    # each is read once, and none that no pose names
+    used = {name: shapes[name] for mix in mixes.values() for name in mix}
+    parts = {name: _offset(path, neutral) for name, path in used.items()}
+    still = np.zeros_like(neutral.coordinates)
+    return {
+        extreme: sum((value * parts[name] for name, value in mixes[extreme].items()), still)
+        if extreme in mixes
+        else _offset(path, neutral)
+        for extreme, path in paths.items()
+    }
+
+
+def _offset(path: str | Path, neutral: sculpts.Pose) -> np.ndarray:
+    """Read how a file of the neutral's kind differs from it."""
+    return sculpts.read_sculpt(path, neutral)[0] - neutral.coordinates
 
 
 def _read_mix(path: str | Path, shapes: Mapping[str, str]) -> dict[str, float]:
