@@ -48,6 +48,24 @@ def check_references(tables, face_regions):
             show.check_references(f"config/{name}.tsv", tables[name], column, names, where)
 
 
+def check_expression(tables, row):
+    """Refuse an extreme that is seen in another actor's shot."""
+    session = row_of(tables["shots"], "shot", row.cells["shot"])["session"]
+    whose = row_of(tables["sessions"], "session", session)["actor"]
+    if whose != row.cells["actor"]:
+        message = f"'{row.cells['shot']}' shows {whose}; choose a shot of {row.cells['actor']}"
+        refuse("expressions", row, "shot", message)
+
+
+def check_directing(tables, row):
+    """Refuse gains of takes without layers, and times that are none."""
+    shots = cells(tables["shots"], "shot")
+    show.check_references("config/directing.tsv", [row], "shot", shots, "shots.tsv")
+    if row_of(tables["characters"], "character", row.cells["character"])["method"] != "layers":
+        message = f"'{row.cells['character']}' is not driven by layers; only they can be directed"
+        refuse("directing", row, "character", message)
+
+
 def check_sense(tables, face_regions):
     """Refuse rows that ask for what other cells do not give."""
     if not face_regions and any(
@@ -168,21 +186,3 @@ def check_cast(tables, row):
     for name in wanted or ([] if driven else ["any shot of this actor"]):
         if name not in driven:
             refuse("cast", row, "points", f"{name} has no {points} points; correct the cell")
-
-
-def check_expression(tables, row):
-    """Refuse an extreme that is seen in another actor's shot."""
-    session = row_of(tables["shots"], "shot", row.cells["shot"])["session"]
-    whose = row_of(tables["sessions"], "session", session)["actor"]
-    if whose != row.cells["actor"]:
-        message = f"'{row.cells['shot']}' shows {whose}; choose a shot of {row.cells['actor']}"
-        refuse("expressions", row, "shot", message)
-
-
-def check_directing(tables, row):
-    """Refuse gains of takes without layers, and times that are none."""
-    shots = cells(tables["shots"], "shot")
-    show.check_references("config/directing.tsv", [row], "shot", shots, "shots.tsv")
-    if row_of(tables["characters"], "character", row.cells["character"])["method"] != "layers":
-        message = f"'{row.cells['character']}' is not driven by layers; only they can be directed"
-        refuse("directing", row, "character", message)

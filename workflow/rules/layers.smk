@@ -177,7 +177,7 @@ rule transfer_layers_published:
 
 rule direct_layers:
     input:
-        ancient(present([directing_table()])),
+        ancient(directing_source),
         layers="results/takes/{shot}/{character}/layers.parquet",
         rig=rig_of,
         extremes=data_table("extremes.tsv"),
@@ -195,7 +195,7 @@ rule direct_layers:
     params:
         code=code_of("direct_layers"),
         rows=directing_rows,
-        directing=directing_table(),
+        directing=directing_table,
     shell:
         "python -m stages.direct_layers"
         " --layers {input.layers:q}"
