@@ -150,8 +150,8 @@ def test_an_extreme_of_a_family_may_stand_alone_and_rows_multiply(take):
     np.testing.assert_array_equal(found["mouth.speech_m"], plain["mouth.speech_m"])
 
 
-def test_what_is_directed_can_be_smoothed_without_limits(take):
-    take.direct("oliver\t\temotion\t\t4\t\t\t")
+def smoothed(take, smoothing):
+    """Run smooth_weights on what was directed, with a head that is still."""
     frames = np.arange(FRAMES)
     still = {f"rotation.{axis}": np.zeros(FRAMES) for axis in "xyz"}
     still |= {"rotation.w": np.ones(FRAMES), "scale": np.ones(FRAMES)}
@@ -163,7 +163,7 @@ def test_what_is_directed_can_be_smoothed_without_limits(take):
         "head-motion": str(head),
         "rig": f"{take.folder}/rig.npz",
         "channels": "",
-        "smoothing": "none",
+        "smoothing": smoothing,
         "lip-points": "",
         "rate": "film",
         "head": "apply",
@@ -175,14 +175,32 @@ def test_what_is_directed_can_be_smoothed_without_limits(take):
         "csv": f"{take.folder}/weights.csv",
     }
     smooth_weights.main(words(options))
-    baked = weights.read(take.folder / "weights.parquet", COLUMNS)
-    expected = np.stack([4 * take.composed("mouth", "emotion", "joy")], axis=1)[:, 0]
-    assert expected[np.isfinite(expected)].max() > 1.0
+    return weights.read(take.folder / "weights.parquet", COLUMNS)
+
+
+def test_what_is_directed_has_no_limits_and_its_gaps_are_filled(take):
+    take.direct("oliver\t\temotion\t\t4\t\t\t")
+    baked = smoothed(take, "none")
+    expected = 4 * take.composed("mouth", "emotion", "joy")
+    assert np.nanmax(expected) > 1.0
     expected[40] = (expected[39] + expected[41]) / 2
     np.testing.assert_allclose(
         baked.shapes[:, COLUMNS.index("mouth.emotion_joy")], expected, atol=1e-6
     )
     assert (baked.confidence == 0).nonzero()[0].tolist() == [40]
+
+
+def test_the_motion_filter_keeps_weights_on_their_simplices(take):
+    plain = take.direct()
+    baked = smoothed(take, "multiresolution")
+    assert baked.shapes.min() >= 0.0
+    for mask in MASKS:
+        part = [number for number, name in enumerate(COLUMNS) if name.startswith(f"{mask}.")]
+        before = np.nanmax(sum(plain[COLUMNS[number]] for number in part))
+        after = baked.shapes[:, part].sum(axis=1)
+        assert after.max() <= before + 1e-6
+    jump = np.abs(np.diff(baked.shapes[:, COLUMNS.index("upper.emotion_joy")])).mean()
+    assert jump < 0.8 * np.nanmean(np.abs(np.diff(plain["upper.emotion_joy"])))
 
 
 @pytest.mark.parametrize(
