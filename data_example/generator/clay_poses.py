@@ -19,7 +19,7 @@ emotion_joy jawOpen=0.18 cheekSquint=0.9 mouthSmile=0.95 browOuterUp=0.2
 emotion_ecstasy jawOpen=0.45 mouthClose=0 cheekSquint=1 mouthUpperUp=0.5
 emotion_trust eyeWide=0.3 mouthSmile=0.38
 emotion_fear eyeWide=1 mouthStretch=1 browInnerUp=1 jawOpen=0.15 mouthLowerDown=0.45
-emotion_surprise jawOpen=0.3 mouthClose=0 mouthFunnel=0.35 eyeWide=0.8
+emotion_surprise jawOpen=0.24 mouthClose=0 mouthFunnel=0.2 eyeWide=0.7 browOuterUp=0.85
 emotion_amazement jawOpen=0.75 mouthClose=0 mouthFunnel=0.3 eyeWide=1
 emotion_sadness mouthShrugLower=0.6 mouthFrown=0.95 eyeBlink=0.3
 emotion_grief mouthShrugLower=0.8 jawOpen=0.12
@@ -72,14 +72,14 @@ def _kind(name):
 
 
 def masks(rig):
-    """Return the masks of the head's vertices, (3, V), rows extreme_files.MASKS, a partition of unity.
+    """Return the masks of the head's vertices, (3, V): `upper`, `mouth` and `eyes`, together one.
 
     Parameters
     ----------
     rig : clay_rig.Clay
     """
     v = rig.neutral * 10
-    mouth = fields.smoothstep(-12, -36, v[:, 1])
+    mouth = fields.smoothstep(-6, -42, v[:, 1])
     eyes = np.zeros(len(v))
     for side in ("r", "l"):
         away = np.linalg.norm((v[: rig.skin] - clay.EYE[side]) / [34, 32, 40], axis=1)

@@ -78,7 +78,6 @@ def lids(name, out, p):
     blink = p[f"blink_{name}"]
     slant = p["slant"] * u * (1 - 0.5 * blink)
     high, low = UPPER + p[f"lid_{name}"], UNDER + p[f"under_{name}"]
-    high, low = high + blink * (SHUT - high), low + blink * (SHUT - low)
     arch = np.maximum(1 - s * s, 0) ** 0.62
     fringe = np.where(LID_UP, np.maximum(high + slant, low + 0.3 * slant), low + 0.3 * slant)
     meet = SHUT + slant
@@ -103,13 +102,14 @@ def ridge(name, out, p):
     t = np.linspace(-1, 1, RIDGE)
     inner, outer = (1 - t) / 2, (1 + t) / 2
     up = p[f"inner_{name}"] * inner**1.2 + p[f"outer_{name}"] * outer**1.2
+    up = up * (1.1 - 0.45 * t**4)
     azimuth = out * (1.26 * t - 0.10 - 0.30 * p["knit"] * inner)
     elevation = 0.94 - 0.20 * t * t - 0.08 * inner + 0.30 * up - 0.38 * p["knit"] * inner**1.4
     taper = np.maximum(1 - np.abs(t) ** 3, 0) ** 0.5 * (1 + 0.15 * inner)
     reach = BALL + 0.55 + 0.5 * taper
-    # the roll's back edge stays on the lid, as if skin stretched between them
-    rest = 0.82 - 0.20 * t * t
-    rows = [_toward(out * 1.26 * t, rest) * (BALL + 0.35)]
+    # the roll's lower edge half stays on the lid, as if skin stretched between them
+    rows = [_toward(out * 1.26 * t, 0.82 - 0.20 * t * t + 0.18 * up) * (BALL + 0.35)]
+    rows[0][:, 1] += 0.30 * up
     for rise, depth in ((-0.20, 0.10), (-0.03, 0.46), (0.19, 0.14), (0.42, -1.0)):
         swell = reach + depth * (0.35 + 0.65 * taper)
         rows.append(_toward(azimuth, elevation + rise * taper) * swell[:, None])

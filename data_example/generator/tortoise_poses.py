@@ -8,7 +8,7 @@ ridges stand for brows.
 from data_example.generator import tortoise
 
 POSES = """
-emotion serenity smile=0.6 blink=0.5 under=0.12 cheek=0.4 outer=0.15 neck=0.25
+emotion serenity smile=0.6 blink=0.6 under=0.12 cheek=0.4 outer=0.15 neck=0.25
 emotion joy smile=1 spread=0.5 jaw=0.10 cheek=0.9 under=0.74 lid=0.40 gaze_y=0.45 outer=0.45
   inner=0.45 neck=0.7
 emotion ecstasy smile=1.1 spread=0.6 jaw=0.5 cheek=1 under=0.86 lid=0.46 outer=0.95 inner=0.95

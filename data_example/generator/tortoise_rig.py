@@ -10,7 +10,7 @@ from data_example.generator import tortoise_parts as parts
 SKIN, CROWN, PALE = (0.55, 0.60, 0.36), (0.43, 0.50, 0.29), (0.80, 0.76, 0.52)
 HORN, HORN_EDGE, FLESH = (0.84, 0.71, 0.42), (0.55, 0.40, 0.22), (0.42, 0.10, 0.11)
 DARK = (0.16, 0.04, 0.05)
-LID, LID_EDGE, RIDGE = (0.60, 0.63, 0.38), (0.20, 0.21, 0.12), (0.38, 0.40, 0.23)
+LID, LID_EDGE, RIDGE = (0.60, 0.63, 0.38), (0.20, 0.21, 0.12), (0.24, 0.26, 0.14)
 PUPIL, IRIS, IRIS_RIM, WHITE = (
     (0.04, 0.03, 0.03),
     (0.88, 0.58, 0.14),
@@ -52,7 +52,7 @@ def _pieces(rest, p):
 
 
 def _faces(rest):
-    """Return the quads of each kind of piece, outside counter-clockwise."""
+    """Return the quads of each piece or kind of piece, outside counter-clockwise."""
     rows = len(parts.BALL_ANGLES)
     pole = parts.pole_quads(parts.SPOKES, rows * parts.SPOKES)
     ball = modelling.flipped(parts.closed_quads(rows, parts.SPOKES))
@@ -61,7 +61,8 @@ def _faces(rest):
         "ball": ball + pole,
         "glint": [(0, 1, 2, 3)],
         "lid": modelling.flipped(parts.closed_quads(parts.LID_ROWS, parts.LIDS)),
-        "ridge": modelling.grid(parts.RIDGE_ROWS, parts.RIDGE),
+        "ridge_l": modelling.grid(parts.RIDGE_ROWS, parts.RIDGE),
+        "ridge_r": modelling.flipped(modelling.grid(parts.RIDGE_ROWS, parts.RIDGE)),
         "nose": [(i, i + 1, 4 - i, 5 - i) for i in range(2)],
         "tongue": modelling.flipped(modelling.grid(*parts.TONGUE)),
         "shell": modelling.flipped(
@@ -121,7 +122,7 @@ def _colours(rest, seed):
     """Return the colours of each kind of piece."""
     ball = np.repeat([PUPIL, IRIS, IRIS_RIM, WHITE, WHITE], parts.SPOKES, axis=0)
     lid = np.repeat([LID_EDGE, LID_EDGE, LID, LID, CROWN, CROWN], parts.LIDS, axis=0)
-    ridge = np.repeat([LID, RIDGE, (0.46, 0.48, 0.28), RIDGE, CROWN], parts.RIDGE, axis=0)
+    ridge = np.repeat([LID, RIDGE, (0.33, 0.35, 0.19), RIDGE, CROWN], parts.RIDGE, axis=0)
     return {
         "skin": _skin_colours(rest, seed),
         "ball": np.concatenate([ball, [PUPIL]]),
@@ -139,16 +140,17 @@ def _masks(rest, neutral, slices):
     below = np.zeros(len(neutral))
     v = rest.table.reshape(-1, 3)
     # the seam runs under the eyes over the nose, and where the throat becomes the neck
-    share = fields.smoothstep(3.9, 1.7, v[:, 1] - 0.10 * np.maximum(v[:, 2] - 5.0, 0))
-    share *= fields.smoothstep(-3.0, 2.0, v[:, 2])
+    share = fields.smoothstep(5.2, 1.2, v[:, 1] - 0.10 * np.maximum(v[:, 2] - 5.0, 0))
+    share *= fields.smoothstep(-4.0, 2.5, v[:, 2]) * fields.smoothstep(-11.5, -6.5, v[:, 1])
     count = tortoise.MOUTH * tortoise.COLUMNS
     below[slices["skin"]] = np.concatenate([np.ones(count), share])
     eyes = np.zeros(len(neutral))
     for name, out in parts.SIDES:
         for piece in ("ball", "glint", "lid"):
             eyes[slices[f"{piece}_{name}"]] = 1.0
-        away = np.linalg.norm((v - parts.EYE * [out, 1, 1]) / [3.4, 3.4, 3.8], axis=1)
-        near = np.concatenate([np.zeros(count), fields.smoothstep(1.35, 0.85, away)])
+        # the corners of the mouth are near the eyes, and none of theirs
+        away = np.linalg.norm((v - [out * 4.9, 4.9, 4.0]) / [3.2, 2.6, 3.6], axis=1)
+        near = np.concatenate([np.zeros(count), fields.smoothstep(1.6, 0.6, away)])
         eyes[slices["skin"]] = np.maximum(eyes[slices["skin"]], near)
     below[slices["tongue"]] = 1.0
     # a nostril goes with the two vertices of skin that it lies on
@@ -177,7 +179,7 @@ def build(seed=43):
     pieces = modelling.Pieces()
     for name, piece in neutral.items():
         kind = name.partition("_")[0]
-        pieces.add(name, len(piece), faces[kind], colours[kind])
+        pieces.add(name, len(piece), faces.get(name) or faces[kind], colours[kind])
 
     def pose(p):
         return np.concatenate(list(_pieces(rest, p).values()))
