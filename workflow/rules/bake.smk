@@ -78,14 +78,38 @@ rule assemble_rig:
         " 2> {log:q}"
 
 
+rule learn_dynamics:
+    input:
+        solutions=basis_solutions,
+        rig="results/cast/{actor}/{character}/rig.npz",
+    output:
+        dynamics="results/cast/{actor}/{character}/dynamics.npz",
+    log:
+        "logs/learn_dynamics/{actor}/{character}.log",
+    benchmark:
+        "logs/learn_dynamics/{actor}/{character}.tsv"
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("learn_dynamics"),
+    shell:
+        "python -m stages.learn_dynamics"
+        " --solutions {input.solutions:q}"
+        " --rig {input.rig:q}"
+        " --dynamics {output.dynamics:q}"
+        " 2> {log:q}"
+
+
 rule smooth_weights:
     input:
         cut_film_source,
-        character_source("channels"),
+        curve_channels_source,
         solution=solution_of,
         head_motion=head_motion_of,
         expression=expression_of,
         rig=rig_of,
+        dynamics=dynamics_of,
         edits=edits_of,
     output:
         weights="results/takes/{shot}/{character}/weights.parquet",
@@ -99,8 +123,10 @@ rule smooth_weights:
     threads: 1
     params:
         code=code_of("smooth_weights"),
-        channels=character_path("channels"),
+        channels=curve_channels,
         smoothing=character_cell("smoothing"),
+        gap_filling=character_cell("gap_filling"),
+        tempo=character_cell("tempo"),
         lip_points=lip_points_of,
         first_frame=shot_cell("first_frame"),
         last_frame=shot_cell("last_frame"),
@@ -117,6 +143,9 @@ rule smooth_weights:
         " --rig {input.rig:q}"
         " --channels={params.channels:q}"
         " --smoothing {params.smoothing:q}"
+        " --gap-filling {params.gap_filling:q}"
+        " --dynamics {input.dynamics:q}"
+        " --tempo {params.tempo}"
         " --lip-points={params.lip_points:q}"
         " --rate={params.rate:q}"
         " --head {params.head:q}"

@@ -43,6 +43,17 @@ def folder_of(name):
     return folder
 
 
+def curve_channels(wildcards):
+    """Return the table of a take's own curves; that of layers concerns their delivery."""
+    layered = character_row(wildcards.character)["method"] == "layers"
+    return "" if layered else character_path("channels")(wildcards)
+
+
+def curve_channels_source(wildcards):
+    """Return that table if it exists."""
+    return present([curve_channels(wildcards)])
+
+
 def sculpts(wildcards):
     """Return the sculpts of a character, sorted: editing, adding or removing one is noticed."""
     suffix = Path(character_row(wildcards.character)["neutral"]).suffix
@@ -182,18 +193,37 @@ def regression_of(wildcards):
     return f"results/cast/{actor}/{wildcards.character}/rbf.npz"
 
 
-def solution_of(wildcards):
-    """Return the weights that a take's method finds, before smoothing."""
-    method = character_row(wildcards.character)["method"]
-    take = f"results/takes/{wildcards.shot}/{wildcards.character}"
-    if points_of(wildcards) == "curves":
+def solution_path(shot, character, points):
+    """Return the weights that a take's method finds, before all that follows."""
+    method = character_row(character)["method"]
+    take = f"results/takes/{shot}/{character}"
+    if points == "curves":
         return f"{take}/mapped.parquet"
     return {
-        "key_shapes": f"results/shots/{wildcards.shot}/key_weights.parquet",
+        "key_shapes": f"results/shots/{shot}/key_weights.parquet",
         "layers": f"{take}/directed.parquet",
         "rbf": f"{take}/predicted.parquet",
         "blendshapes": f"{take}/solved.parquet",
     }[method]
+
+
+def solution_of(wildcards):
+    """Return the weights that a take's method finds, before smoothing."""
+    return solution_path(wildcards.shot, wildcards.character, points_of(wildcards))
+
+
+def basis_solutions(wildcards):
+    """Return these of an actor's basis shots, from which a character's dynamics are learnt."""
+    points, character = points_of(wildcards), wildcards.character
+    rows = shots_of(wildcards.actor, points, ["yes"])
+    return [solution_path(row["shot"], character, points) for row in rows]
+
+
+def dynamics_of(wildcards):
+    """Return how a character moves, where gaps are filled or curves smoothed by that."""
+    row, actor = character_row(wildcards.character), session_of(wildcards.shot)["actor"]
+    asked = "dynamics" in (row["gap_filling"], row["smoothing"])
+    return [f"results/cast/{actor}/{wildcards.character}/dynamics.npz"] if asked else []
 
 
 def rig_of(wildcards):
@@ -252,4 +282,4 @@ def shown_tracked(wildcards):
 def shown_performance(wildcards):
     """Return the performance of a take that markers drive."""
     path = f"results/shots/{wildcards.shot}/performance.parquet"
-    return [path] if points_of(wildcards) == "markers" else []
+    return [path] if points_of(wildcards) in ("markers", "both") else []

@@ -154,6 +154,10 @@ def check_character(row):
         if len(show.listed(row.cells["painted_masks"])) != 3:
             message = "masks are painted; name those that are red, green and blue, with commas"
             refuse("characters", row, "painted_masks", message)
+    if row.cells["method"] == "layers" and row.cells["channels"]:
+        if not row.cells["delivery_shapes"]:
+            message = "method layers has channels of its delivery_shapes alone; clear the cell"
+            refuse("characters", row, "channels", message)
     for column in ("tempo", "damping"):
         if float(row.cells[column]) == 0:
             refuse("characters", row, column, "must be above 0; write 1 for no change")
