@@ -6,8 +6,6 @@ import numpy as np
 
 # phones of a viseme among which the most typical is sought: the longest of them
 LONGEST_SHARE, LEAST_PHONES = 0.5, 5
-# an eye that closes no further than this share of its usual opening has not blinked
-CLOSED_SHARE = 0.5
 # frames whose opening is as wanted within this share of the range
 OPENING_TOLERANCE = 0.08
 # of the openings, that count as the usual one and as closed
@@ -95,7 +93,7 @@ def opening_of_contour(points: np.ndarray) -> np.ndarray:
 
 
 def blink_frames(
-    opening: np.ndarray, values: np.ndarray, eligible: np.ndarray
+    opening: np.ndarray, values: np.ndarray, eligible: np.ndarray, closed_share: float
 ) -> dict[str, int] | None:
     """Choose frames of open, half open and closed eyes.
 
@@ -108,6 +106,7 @@ def blink_frames(
     opening : (T,) float array, NaN where not observed
     values : (T, D) float array, the face less its neutral
     eligible : (T,) bool array
+    closed_share : eyes that keep more than this share of their usual opening have not blinked
 
     Returns
     -------
@@ -117,7 +116,7 @@ def blink_frames(
     if not usable.any():
         return None
     usual, least = np.percentile(opening[usable], [USUAL_PERCENTILE, CLOSED_PERCENTILE])
-    if least > CLOSED_SHARE * usual:
+    if least > closed_share * usual:
         return None
     wanted = {"open": usual, "half": (usual + least) / 2, "closed": least}
     found: dict[str, int] = {}

@@ -11,7 +11,6 @@ from typing import NamedTuple
 from stages.files import delimited, errors, extremes
 
 COLUMNS = ("actor", "layer", "name", "shot", "frame")
-PROPOSALS = "expression_proposals.tsv"
 
 
 class Picked(NamedTuple):
@@ -61,7 +60,7 @@ def read(
         found[extreme] = taken[place] = picked
     if not found:
         message = f"has no row for actor {actor}: pick frames that show extremes"
-        raise errors.InputError(path, f"{message}, some are proposed in {PROPOSALS}")
+        raise errors.InputError(path, f"{message}, the actor's page of proposals has some")
     rows = [found[extreme] for extreme in sorted(found, key=order.__getitem__)]
     check_layers(path, rows)
     return rows

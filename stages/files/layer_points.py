@@ -45,6 +45,7 @@ class LayerPoints:
     layout : its groups
     offsets : a (T, P, D) float array [face units] for each group, differences from the shot's
         neutral, NaN where not observed
+    neutrals : its (P, D) float array [face units] for each group
     confidence : (T,) float array, 0..1, the least of the groups'
     """
 
@@ -53,6 +54,7 @@ class LayerPoints:
     rate: Fraction
     layout: Layout
     offsets: list[np.ndarray]
+    neutrals: list[np.ndarray]
     confidence: np.ndarray
 
 
@@ -73,8 +75,23 @@ def read(path: str | Path, points: str) -> LayerPoints:
         first.rate,
         [Group(kind, driving.names) for kind, driving in groups],
         [driving.points - driving.neutral for _, driving in groups],
+        [driving.neutral for _, driving in groups],
         confidence.min(axis=0),
     )
+
+
+def read_available(path: str | Path, points: str) -> LayerPoints:
+    """Read of the points that are wanted those that the shot has.
+
+    Raises
+    ------
+    errors.InputError
+        if it has none
+    """
+    meta = series.read(path, "expression").meta
+    own = {"markers": bool(meta.get("markers")), "video": bool(meta.get("points"))}
+    kinds = [kind for kind in KINDS[points] if own[kind]]
+    return read(path, kinds[0] if len(kinds) == 1 else points)
 
 
 def known_names(path: str | Path) -> list[str]:
@@ -96,12 +113,12 @@ def flat(points: LayerPoints, layout: Layout) -> np.ndarray:
     """Return (T, D) offsets in the order of a layout, NaN for points that the shot lacks."""
     columns = []
     for group in layout:
-        own = next(i for i, each in enumerate(points.layout) if each.kind == group.kind)
-        index = {name: place for place, name in enumerate(points.layout[own].names)}
         values = np.full((len(points.frame), len(group.names), group.dimensions), np.nan)
-        shared = [place for place, name in enumerate(group.names) if name in index]
-        found = [index[group.names[place]] for place in shared]
-        values[:, shared] = points.offsets[own][:, found]
+        for own, offsets in zip(points.layout, points.offsets, strict=True):
+            if own.kind == group.kind:
+                index = {name: place for place, name in enumerate(own.names)}
+                shared = [place for place, name in enumerate(group.names) if name in index]
+                values[:, shared] = offsets[:, [index[group.names[place]] for place in shared]]
         columns.append(values.reshape(len(values), -1))
     return np.concatenate(columns, axis=1)
 

@@ -57,7 +57,7 @@ def test_eyes_open_half_and_closed_in_a_calm_face():
     values[:140] += 2
     values[200:] += 2
     opening[7] = np.nan
-    found = expression_proposals.blink_frames(opening, values, np.ones(300, bool))
+    found = expression_proposals.blink_frames(opening, values, np.ones(300, bool), 0.5)
     assert found["half"] in (151, 157) and found["closed"] in (153, 154, 155)
     assert 140 <= found["open"] < 200 and abs(opening[found["open"]] - 1) < 0.1
 
@@ -66,5 +66,6 @@ def test_eyes_that_never_close_have_no_blink():
     opening = 1 + 0.2 * np.sin(np.arange(100))
     still = np.zeros((100, 2))
     every = np.ones(100, bool)
-    assert expression_proposals.blink_frames(opening, still, every) is None
-    assert expression_proposals.blink_frames(opening, still, ~every) is None
+    assert expression_proposals.blink_frames(opening, still, every, 0.5) is None
+    assert expression_proposals.blink_frames(opening, still, every, 0.9) is not None
+    assert expression_proposals.blink_frames(opening, still, ~every, 0.9) is None
