@@ -79,7 +79,7 @@ def edge(p):
     narrow = 0.46 * p["pucker"] + 0.22 * p["round"]
     half = HALF * (1 - narrow + 0.10 * p["spread"])
     x = s * half + np.sign(s) * end * 0.45 * np.maximum(smile, 0)
-    y = 0.9 * end + 2.0 * end * smile - 0.25 * np.maximum(smile, 0) - 0.3 * (1 - end)
+    y = 0.6 * end + 2.1 * end * smile - 0.25 * np.maximum(smile, 0) - 0.3 * (1 - end)
     forward = 2.2 * p["pucker"] + 1.1 * p["round"]
     z = TIP - BACK * (1 - 0.30 * narrow) * s * s + forward * (1 - 0.55 * s * s)
     z = z - 0.5 * p["spread"] * end

@@ -36,15 +36,15 @@ emotion contempt smile_l=0.85 smile_r=-0.35 sneer_l=0.3 cheek_l=0.5 outer_r=1 in
   reach=-0.5 lean=0.7 aside=0.3
 speech m press=1 pucker=0.12 cheek=0.15
 speech f jaw=0.10 tuck=1 sneer=0.6 lift=0.25 spread=0.3
-speech th jaw=0.28 tongue=0.45 lick=0.7 drop=0.1
-speech t jaw=0.16 tongue=1 spread=0.35 lift=0.2
+speech th jaw=0.28 tongue=0.4 lick=0.5 drop=0.1
+speech t jaw=0.18 tongue=0.7 spread=0.35 lift=0.2
 speech sh jaw=0.12 round=0.9 pucker=0.35
 speech r jaw=0.20 round=0.4 pucker=0.65 tongue=0.4
 speech oo jaw=0.20 pucker=1.05 round=0.5 cheek=-0.4
 speech oh jaw=0.48 pucker=0.5 round=0.75 gular=0.2
 speech aa jaw=0.98 spread=0.1 gular=0.5
-speech eh jaw=0.44 spread=0.7 smile=0.15 gular=0.2
-speech ee jaw=0.20 spread=1.1 smile=0.35 drop=0.2 lift=0.2 cheek=0.3
+speech eh jaw=0.44 spread=0.75 lift=0.1 gular=0.2
+speech ee jaw=0.20 spread=1.1 smile=0.12 drop=0.3 lift=0.3 cheek=0.2
 blink half blink=0.5
 blink closed blink=1
 """
