@@ -58,7 +58,9 @@ def pose_of(text=""):
     for entry in text.split():
         name, _, value = entry.partition("=")
         sides = (name,) if name in p else (f"{name}_l", f"{name}_r")
-        p |= {side: p[side] * 0 + float(value) for side in sides}
+        if not set(sides) <= set(p):
+            raise ValueError(f"a tortoise has no '{name}'")
+        p |= dict.fromkeys(sides, float(value))
     return p
 
 
@@ -164,6 +166,7 @@ def skin(rest, p):
     way, middle = shell_way(p), table.mean(axis=1, keepdims=True)
     girth = 1 - 0.13 * p["neck"] + 0.14 * p["puff"]
     wide = 1 + (girth - 1) * np.sin(np.pi * np.minimum(NECK * 1.25, 1)) ** 0.5
+    # a long neck has its wrinkles smoothed out, a short one folds deeper
     crease = np.maximum(-0.75 * p["neck"], -0.8) * WRINKLE / 4.5
     table = middle + (wide + crease)[:, None, None] * (table - middle)
     table = table + NECK[:, None, None] * way
