@@ -10,6 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stages.core import coordinate_balance
+
 COUNTS = (29, 12, 3)
 UPPER, MOUTH, EYES = range(3)
 EMOTION, SPEECH, BLINK = range(3)
@@ -60,18 +62,15 @@ def layers() -> np.ndarray:
 
 
 def balanced(raw: np.ndarray, kinds: np.ndarray, masks: np.ndarray) -> Face:
-    """Divide each kind of coordinate by its spread over the extremes, then all by their mean size.
+    """Balance kinds of coordinates as the pipeline does by default.
 
     Parameters
     ----------
     raw : (D, K) float array [mm]
-    kinds : (D,) int array, markers or video points
+    kinds : (D,) int array, 0 markers, 1 video points
     masks : (R, D) float array
     """
-    unit = np.ones(len(raw))
-    for kind in np.unique(kinds):
-        unit[kinds == kind] = np.sqrt(np.mean(raw[kinds == kind] ** 2))
-    unit *= np.sqrt(np.mean(np.sum((raw / unit[:, None]) ** 2, axis=0)))
+    unit = 1.0 / coordinate_balance.factors(raw, kinds, "variance")
     return Face(raw / unit[:, None], layers(), masks, unit)
 
 
@@ -117,7 +116,7 @@ def drawn_face(seed: int, shared_neutral: bool = True) -> tuple[Face, np.ndarray
     rng = np.random.default_rng(seed)
     markers, points, owner = _places(rng)
     dimension = np.append(np.repeat(3, MARKERS), np.repeat(2, EYE_POINTS + LIP_POINTS))
-    kinds = np.repeat(dimension, dimension)
+    kinds = np.repeat(dimension == 2, dimension).astype(int)
     masks = np.eye(3)[np.repeat(owner, dimension)].T
     places = (markers, points)
     whole = _modes(rng, places, rng.uniform([-55, -75], [55, 75], (45, 2)), 22.0)

@@ -28,7 +28,7 @@ def take(folder: Path) -> tuple[layer_faces.Face, layer_faces.Performance]:
     shapes = shapes.reshape(len(names), -1)[:, coordinates]
     masks = np.eye(3)[np.repeat(owner, dimension)].T
     raw = _extremes(names, track[:PICKED_ROWS], shapes)
-    face = layer_faces.balanced(raw, np.repeat(dimension, dimension), masks)
+    face = layer_faces.balanced(raw, np.repeat(flat.astype(int), dimension), masks)
     rows = np.clip(track[PICKED_ROWS:], 0.0, 1.0)
     noise = 0.3 * np.random.default_rng(0).normal(size=(len(rows), shapes.shape[1]))
     frames = (rows @ shapes + noise) / face.unit

@@ -128,7 +128,7 @@ def build(
     layer = np.array(layer, np.int64)
     _check(basis, layer, masks, lip_mask, speech_layer, closed)
     regions, layers, count = len(masks), int(layer.max()) + 1, len(layer)
-    pairs = np.argwhere((masks @ masks.T) > 0.0).astype(np.int64)
+    pairs = np.ascontiguousarray(np.argwhere((masks @ masks.T) > 0.0), np.int64)
     gram = _gram(basis, masks, pairs)
     diagonal = np.diag(gram)
     if not diagonal.any():

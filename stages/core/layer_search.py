@@ -15,6 +15,7 @@ from stages.core import (
 TOLERANCE = 1e-12
 CLOSE_ENOUGH = 1e-9
 DRAWS = 4
+UNSEEN = 1e-6
 
 
 class Found(NamedTuple):
@@ -93,4 +94,24 @@ def best(
             other, place = descend(model, objective, start)
             if other < value - enough:
                 value, point = other, place
+    if before is not None:
+        value, point = _held(model, objective, before, value, point)
     return Found(value, point, bound, relaxed)
+
+
+def _held(
+    model: layer_model.Model,
+    objective: layer_objective.Objective,
+    before: np.ndarray,
+    value: float,
+    point: np.ndarray,
+) -> tuple[float, np.ndarray]:
+    """Give a layer without weight, which leaves its coefficients open, the last frame's."""
+    regions, layers, _ = model.sizes
+    for layer in range(layers):
+        if point[layer : regions * layers : layers].max() < UNSEEN:
+            held = np.where(model.group == regions + layer, before, point)
+            other = layer_objective.value(model, objective, held)
+            if other <= value + CLOSE_ENOUGH * model.scale:
+                value, point = other, held
+    return value, point
