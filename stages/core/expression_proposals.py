@@ -8,8 +8,6 @@ import numpy as np
 LONGEST_SHARE, LEAST_PHONES = 0.5, 5
 # frames whose opening is as wanted within this share of the range
 OPENING_TOLERANCE = 0.08
-# of the openings, that count as the usual one and as closed
-USUAL_PERCENTILE, CLOSED_PERCENTILE = 50.0, 0.5
 
 
 def filled(values: np.ndarray) -> np.ndarray:
@@ -97,8 +95,8 @@ def blink_frames(
 ) -> dict[str, int] | None:
     """Choose frames of open, half open and closed eyes.
 
-    Open is the usual opening, closed nearly the least, half lies midway. Among the frames that
-    have the opening that is wanted, the one nearest to the neutral is taken: so a blink in the
+    Open is the usual opening, closed the least, half lies midway. Among the frames that have
+    nearly the opening that is wanted, the one nearest to the neutral is taken: so a blink in the
     midst of laughter is not.
 
     Parameters
@@ -115,7 +113,7 @@ def blink_frames(
     usable = eligible & np.isfinite(opening)
     if not usable.any():
         return None
-    usual, least = np.percentile(opening[usable], [USUAL_PERCENTILE, CLOSED_PERCENTILE])
+    usual, least = np.median(opening[usable]), opening[usable].min()
     if least > closed_share * usual:
         return None
     wanted = {"open": usual, "half": (usual + least) / 2, "closed": least}
