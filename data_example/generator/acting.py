@@ -16,7 +16,7 @@ FACE = {
         "wide=0.5 pupil=0.45",
         "trust": "smile=0.4 press=0.2 brow_inner=0.6 wide=0.3 gaze_y=0.25 pupil=0.4",
         "fear": "brow_inner=1 wide=0.9 stretch=1 lower_down=0.6 jaw_open=0.15 frown=0.6 pupil=-0.5",
-        "surprise": "wide=0.8 brow_inner=0.4 jaw_open=0.4 funnel=0.5 pupil=-0.2",
+        "surprise": "wide=0.8 brow_inner=0.7 jaw_open=0.5 funnel=0.6 pucker=0.45 pupil=-0.3",
         "amazement": "wide=1.3 brow_inner=0.5 jaw_open=0.95 funnel=0.25 pupil=0.3 gaze_y=0.3",
         "sadness": "brow_inner=0.9 frown=0.9 blink=0.3 gaze_y=-0.6 pupil=0.15",
         "grief": "brow_inner=1.2 frown=1 squint=0.7 stretch=0.6 lower_down=0.5 jaw_open=0.45 "
@@ -34,10 +34,10 @@ FACE = {
     "speech": {
         "m": "lip_close=1 press=0.7",
         "f": "jaw_open=0.08 upper_up=0.7 press=0.3 stretch=0.2",
-        "th": "jaw_open=0.28 tongue_up=0.9 lower_down=0.3",
-        "t": "jaw_open=0.14 tongue_up=0.7 stretch=0.4 lower_down=0.5 upper_up=0.2",
-        "sh": "jaw_open=0.10 funnel=1 pucker=0.3 lower_down=0.2",
-        "r": "jaw_open=0.24 funnel=0.4 pucker=0.6",
+        "th": "jaw_open=0.24 tongue_up=1 lower_down=0.2 stretch=0.15",
+        "t": "jaw_open=0.12 tongue_up=0.3 stretch=0.45 lower_down=0.6 upper_up=0.1",
+        "sh": "jaw_open=0.05 funnel=1 upper_up=0.4 lower_down=0.6",
+        "r": "jaw_open=0.3 pucker=0.4 tongue_up=0.6 upper_up=0.15",
         "oo": "jaw_open=0.16 pucker=1 funnel=0.25",
         "oh": "jaw_open=0.55 funnel=0.7 pucker=0.5",
         "aa": "jaw_open=1 lower_down=0.2",

@@ -2,7 +2,14 @@
 
 import numpy as np
 
-from data_example.generator import acting, cassette_body, cassette_parts, extreme_files, modelling
+from data_example.generator import (
+    acting,
+    cassette_body,
+    cassette_parts,
+    extreme_files,
+    fields,
+    modelling,
+)
 
 SHELL, PANEL, EDGE = (0.80, 0.24, 0.20), (0.93, 0.86, 0.70), (0.30, 0.12, 0.14)
 CHROME, DARK, YELLOW = (0.74, 0.77, 0.80), (0.10, 0.09, 0.12), (0.98, 0.76, 0.24)
@@ -16,6 +23,7 @@ COLOURS = {
 }  # fmt: skip
 ROW = {"unit": "m", "up_axis": "y", "pivot": "0 -0.105 0", "face_unit": "0.268"}
 SCALE = 100.0
+SEAM = 0.85
 
 
 def _bar(half):
@@ -52,7 +60,8 @@ def _faces(name, count):
         faces = modelling.grid(rows, ring, closed=True)
         return faces + ([] if kind == "rim" else closing(count - ring, ring))
     rows = {"lidup": 3, "lidlow": 3, "tape": 3, "brow": 4}.get(kind, 2)
-    return modelling.grid(rows, count // rows)
+    faces = modelling.grid(rows, count // rows)
+    return modelling.flipped(faces) if kind == "tape" else faces
 
 
 def _tones(name, count):
@@ -111,17 +120,14 @@ class Cassette:
         result = np.zeros((3, self.parts.count))
         result[1, self.parts.numbers("mouth", "keys", "slab", "hub", "tape", "reel")] = 1.0
         result[2, self.parts.numbers("rim", "cone", "glint", "lid", "brow")] = 1.0
-        # what touches the panel goes half with it, and the panel a little with what stands on it
-        result[1, self.parts.numbers("mouth")[: cassette_parts.RING]] = 0.5
+        # the panel goes with what stands on it, and what touches the panel with the panel
+        result[1, self.parts.numbers("mouth")[: cassette_parts.RING]] = SEAM
         for side in ("r", "l"):
-            result[2, self.parts.numbers(f"rim_{side}")[: cassette_parts.ROUND]] = 0.5
-        for row, middle, reach in (
-            (1, cassette_parts.MOUTH, 7.0),
-            (2, cassette_parts.EYE["r"], 6.0),
-            (2, cassette_parts.EYE["l"], 6.0),
-        ):
+            result[2, self.parts.numbers(f"rim_{side}")[: cassette_parts.ROUND]] = SEAM
+        middles = (cassette_parts.MOUTH, *cassette_parts.EYE.values())
+        for row, middle in zip((1, 2, 2), middles, strict=True):
             off = np.linalg.norm(self.panel[:, :2] - middle, axis=1)
-            result[row, : len(self.panel)] += 0.4 * np.exp(-((off / reach) ** 4))
+            result[row, : len(self.panel)] += SEAM * (1 - fields.smoothstep(5.5, 8.0, off))
         result = np.round(result, 2)
         result[0] = np.round(1 - result[1] - result[2], 2)
         return result
@@ -141,6 +147,5 @@ def build():
     player = Cassette()
     neutral = player.pose(acting.neutral(), cassette_body.REST)
     faces, colours = np.array(player.parts.faces), np.concatenate(player.parts.colours)
-    return extreme_files.Played(
-        "cassette", neutral, poses(player), faces, colours, player.masks(), ROW
-    )
+    masks = player.masks()
+    return extreme_files.Played("cassette", neutral, poses(player), faces, colours, masks, 6, ROW)

@@ -14,21 +14,21 @@ REST = {
 }  # fmt: skip
 BODIES = {
     "serenity": "curve=0.14 wide=1.02 nod=-0.05 handle=-0.2 aerial=0.15 droop=0.2",
-    "joy": "curve=0.5 tall=1.06 hop=2.2 handle=0.5 aerial=-0.2 swell=0.03",
-    "ecstasy": "curve=0.72 tall=1.18 hop=5 handle=1 aerial=-0.5 swell=0.06 nod=-0.16 keys=0.8",
+    "joy": "curve=0.5 tall=1.06 hop=1.2 handle=0.5 aerial=-0.2 swell=0.03",
+    "ecstasy": "curve=0.72 tall=1.18 hop=2.4 handle=1 aerial=-0.5 swell=0.06 nod=-0.16 keys=0.8",
     "trust": "curve=0.2 nod=0.12 lean=0.1 handle=0.15 aerial=0.25 puff=0.1",
     "fear": "wide=0.86 tall=1.06 curve=-0.12 nod=-0.16 taper=-0.14 handle=-0.6 aerial=-0.45 "
     "keys=-0.6 turn=0.14",
-    "surprise": "swell=0.16 hop=1.6 tall=1.06 handle=0.8 aerial=-0.35 puff=0.12 keys=0.6",
-    "amazement": "swell=0.27 hop=2.4 tall=1.08 handle=1.2 aerial=-0.5 puff=0.22 nod=-0.16 keys=1",
+    "surprise": "swell=0.06 hop=1.2 tall=1.2 wide=0.98 handle=1 aerial=-0.35 puff=0.1 keys=0.6",
+    "amazement": "swell=0.27 hop=1 tall=1.08 handle=1.2 aerial=-0.5 puff=0.22 nod=-0.08 keys=1",
     "sadness": "curve=-0.42 slump=0.55 tall=0.95 nod=0.14 handle=-0.7 aerial=0.6 droop=1.1",
-    "grief": "curve=-0.66 slump=1 tall=0.86 nod=0.2 lean=0.08 handle=-1 aerial=0.9 droop=1.9",
-    "disgust": "lean=-0.2 turn=0.3 taper=0.16 curve=-0.14 nod=-0.1 aerial=0.5 puff=-0.1",
-    "anger": "puff=0.3 lean=-0.12 nod=0.16 taper=0.14 curve=0.1 handle=-0.5 aerial=-0.3 tall=0.94",
-    "rage": "puff=0.5 lean=-0.1 nod=0.2 taper=0.26 swell=0.1 curve=0.16 handle=-0.8 aerial=-0.6 "
-    "keys=1 hop=0.6",
+    "grief": "curve=-0.66 slump=1 tall=0.86 nod=0.14 lean=0.08 handle=-1 aerial=0.9 droop=1.9",
+    "disgust": "lean=-0.18 turn=0.14 taper=0.16 curve=-0.14 nod=-0.1 aerial=0.5 puff=-0.1",
+    "anger": "puff=0.3 lean=-0.1 nod=0.1 taper=0.14 curve=0.1 handle=-0.5 aerial=-0.3 tall=0.94",
+    "rage": "puff=0.5 lean=-0.1 nod=0.12 taper=0.26 swell=0.1 curve=0.16 handle=-0.8 aerial=-0.6 "
+    "keys=1",
     "anticipation": "lean=0.14 nod=0.16 curve=0.16 tall=1.07 handle=0.4 aerial=-0.25 turn=-0.14",
-    "contempt": "lean=-0.15 nod=-0.2 turn=0.24 curve=0.1 handle=-0.3 aerial=0.4",
+    "contempt": "lean=-0.15 nod=-0.1 turn=0.13 curve=0.1 handle=-0.3 aerial=0.4",
 }
 HANDLE_ENDS, AERIAL_FOOT = 12.5, np.array([16.5, 10.0])
 BUTTONS = (-7.5, -2.5, 2.5, 7.5)
@@ -111,14 +111,16 @@ def warp(points, body):
     result = points * [body["wide"], body["tall"], 1.0]
     result[:, 0] *= 1 + body["taper"] * points[:, 1] / HIGH
     inside = np.cos(0.5 * np.pi * np.clip(points[:, :2] / [1.25 * WIDE, 1.25 * HIGH], -1, 1))
-    result[:, 2] *= 1 + 1.1 * body["puff"] * inside.prod(axis=1)
+    # the back bulges more than the front, on which eyes and mouth stand
+    back = fields.smoothstep(DEEP, -DEEP, points[:, 2])
+    result[:, 2] *= 1 + (0.3 + 1.2 * back) * body["puff"] * inside.prod(axis=1)
     result[:, 0] *= 1 + 0.22 * body["puff"] * inside[:, 1]
     result[:, 1] *= 1 + 0.30 * body["puff"] * inside[:, 0]
     # the top gives way in the middle, and what is below spreads
     up = fields.smoothstep(-HIGH, HIGH, points[:, 1])
     result[:, 1] -= 2.6 * body["slump"] * up * inside[:, 0]
     result[:, 0] *= 1 + 0.10 * body["slump"] * (1 - 2 * up)
-    result *= 1 + body["swell"]
+    result *= 1 + body["swell"] * np.array([1.0, 1.0, 0.5])
     bend = body["curve"] / WIDE
     if bend:
         way = bend * result[:, 0]
@@ -127,7 +129,7 @@ def warp(points, body):
         radius = 1 / bend - result[:, 1] + above
         result[:, 0], result[:, 1] = radius * np.sin(way), 1 / bend - radius * np.cos(way) + above
         result[:, 1] -= 0.22 * body["curve"] * WIDE
-    foot = np.array([0, -HIGH, 0])
-    result = _turn(result - foot, 2, -body["lean"])
-    result = _turn(result, 0, body["nod"])
-    return _turn(result, 1, -body["turn"]) + foot + [0, body["hop"], 0]
+    for axis, word, sign in ((2, "lean", -1), (0, "nod", 1), (1, "turn", -1)):
+        result = _turn(result, axis, sign * body[word])
+    result[:, 1] += body["hop"]
+    return result

@@ -88,10 +88,11 @@ def _tape(p, push):
     high, low = (MOUTH_HALF * line for line in features.lips(p, places, GAINS))
     gap = (high - low)[:, 1]
     rows = []
-    for share, lift, z in ((0.0, 0.1, 0.7), (0.16, 0.5, 1.1), (0.02, 0.22, 1.5)):
+    for share, lift, z, out in ((0.0, 0.1, 0.7, 0), (0.16, 0.5, 1.1, 0.8), (0.02, 0.3, 1.5, 2)):
         rise = gap * (share + lift * p["tongue_up"]) * np.array([0.5, 1.0, 0.5])
         line = MOUTH + low + np.stack([0 * rise, rise + MEET], axis=1)
-        rows.append(modelling.raised(line, FRONT + z + 0.8 * push))
+        height = z + 0.8 * push + out * p["tongue_up"]
+        rows.append(modelling.raised(line, FRONT + height))
     result["tape"] = np.concatenate(rows)
     return result
 
@@ -147,7 +148,10 @@ def eye(p, side):
 def _shutters(p, side, big):
     """Return both shutters of a speaker, rows from below, name -> (27, 3)."""
     inner = 1.0 if side == "r" else -1.0
-    high, low = features.lid_heights(p, side, 0.74, -0.86, -0.18)
+    high = features.lid_heights(p, side, 0.74, -0.86, -0.18)[0]
+    # the lower one comes late
+    late = p | {f"blink_{side}": p[f"blink_{side}"] ** 2}
+    low = features.lid_heights(late, side, 0.74, -0.86, -0.18)[1]
     awake = 1 - p[f"blink_{side}"]
     tilt = 0.34 * p[f"brow_inner_{side}"] - 0.7 * p["brow_frown"]
     slant = awake * inner * tilt * LID

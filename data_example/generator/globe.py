@@ -19,7 +19,7 @@ LIPS = {
     "mouth_prim": ((0.94, 0.50, 0.20), (0.98, 0.64, 0.32)),
 }
 DARK, THROAT = (0.30, 0.05, 0.08), (0.10, 0.02, 0.04)
-TEETH, TONGUE = (0.97, 0.95, 0.88), (0.90, 0.45, 0.48)
+TEETH, TONGUE = (0.97, 0.95, 0.88), (0.80, 0.36, 0.40)
 IRIS = {
     "eye_moon": (0.25, 0.60, 0.35),
     "eye_middle": (0.75, 0.48, 0.14),
@@ -39,6 +39,8 @@ ROW = {"unit": "cm", "up_axis": "y", "pivot": "0 -12 0", "face_unit": "10"}
 # how far the skin goes along with the border of a mouth and of an eye, and how far it reaches
 PULL = {"mouth": 0.62, "eye": 0.4}
 REACH = 0.16
+# what a border belongs to its feature, so that lids and lips stay on their ground
+SEAM = 0.8
 
 
 def zipper(ring):
@@ -60,10 +62,16 @@ class Globe:
             self._add_eye(name)
         self.anchors = self._anchors(acting.neutral())
         borders = np.concatenate([grid.borders[name] for name in globe_grid.SITES])
-        off = np.linalg.norm(grid.directions[:, None] - grid.directions[borders], axis=2)
-        near = np.exp(-((off / REACH) ** 2))
+        self.pull = self._near(borders, REACH)
+        self.seam = SEAM * self._near(borders, 1.5 * REACH)
+
+    def _near(self, borders, reach):
+        """Return how much each vertex of the skin has of each of a border, (V, B), sums of 0..1."""
+        directions = self.skin.grid.directions
+        off = np.linalg.norm(directions[:, None] - directions[borders], axis=2)
+        near = np.exp(-((off / reach) ** 2))
         near[borders] = np.eye(len(borders))
-        self.pull = near / np.maximum(near.sum(axis=1, keepdims=True), 1.0)
+        return near / np.maximum(near.sum(axis=1, keepdims=True), 1.0)
 
     def _sew(self, name, first, count):
         """Join a feature's outer ring, its first vertices, to its border in the skin."""
@@ -82,7 +90,7 @@ class Globe:
         self.parts.add(name, 4 * count, faces, tones)
         teeth = modelling.grid(2, globe_features.TEETH)
         self.parts.add(f"teeth_{name}", 2 * globe_features.TEETH, teeth, TEETH)
-        self.parts.add(f"tongue_{name}", 9, modelling.grid(3, 3), TONGUE)
+        self.parts.add(f"tongue_{name}", 9, modelling.flipped(modelling.grid(3, 3)), TONGUE)
 
     def _add_eye(self, name):
         """Add an eye: lids and ball."""
@@ -129,7 +137,7 @@ class Globe:
         )
         near = np.arange(len(self.skin.grid.directions))
         for row, mine in ((1, is_mouth), (2, ~is_mouth)):
-            result[row, near] = np.round(0.5 * self.pull[:, mine].sum(axis=1), 2)
+            result[row, near] = np.round(self.seam[:, mine].sum(axis=1), 2)
         result[0] = 1 - result[1] - result[2]
         return np.round(result, 2)
 
@@ -148,4 +156,5 @@ def build():
     globe = Globe()
     neutral = globe.pose(acting.neutral(), globe_body.REST)
     faces, colours = np.array(globe.parts.faces), np.concatenate(globe.parts.colours)
-    return extreme_files.Played("globe", neutral, poses(globe), faces, colours, globe.masks(), ROW)
+    masks = globe.masks()
+    return extreme_files.Played("globe", neutral, poses(globe), faces, colours, masks, 4, ROW)

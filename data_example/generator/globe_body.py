@@ -11,19 +11,19 @@ REST = {
 }  # fmt: skip
 BODIES = {
     "serenity": "tall=0.97 wide=1.03 deep=1.02 nod=-0.08 relief=0.6",
-    "joy": "tall=1.13 wide=1.0 deep=1.0 hop=0.16 pear=-0.07 bend=0.1 relief=1.3",
-    "ecstasy": "tall=1.3 wide=0.95 deep=0.95 hop=0.34 nod=-0.3 pear=-0.12 pole=0.16 relief=1.6",
+    "joy": "tall=1.13 wide=1.0 deep=1.0 hop=0.07 pear=-0.07 bend=0.1 relief=1.3",
+    "ecstasy": "tall=1.3 wide=0.95 deep=0.95 hop=0.14 nod=-0.2 pear=-0.12 pole=0.16 relief=1.6",
     "trust": "tall=1.02 wide=1.05 deep=1.06 nod=0.14 bend=-0.12 pear=0.05",
     "fear": "tall=0.98 wide=0.8 deep=0.84 nod=-0.14 pear=-0.14 twist=0.14 spikes=0.035 waist=0.05",
-    "surprise": "tall=1.15 wide=1.12 deep=1.1 hop=0.08 nod=-0.08",
-    "amazement": "tall=1.22 wide=1.22 deep=1.18 hop=0.14 nod=-0.2 relief=0.4",
-    "sadness": "tall=0.9 wide=0.97 deep=0.96 pear=0.25 nod=0.16 sag=0.09",
+    "surprise": "tall=1.24 wide=1.0 deep=1.02 hop=0.06 nod=-0.06 pear=-0.08",
+    "amazement": "tall=1.22 wide=1.22 deep=1.18 hop=0.05 nod=-0.14 relief=0.4",
+    "sadness": "tall=0.9 wide=0.97 deep=0.96 pear=0.25 nod=0.16 sag=0.1",
     "grief": "tall=0.85 wide=0.96 deep=0.95 pear=0.31 nod=0.18 sag=0.14 bend=0.1 relief=0.5",
-    "disgust": "tall=1.0 wide=0.95 deep=0.92 bend=-0.26 twist=0.3 nod=-0.1 waist=0.1",
+    "disgust": "tall=1.0 wide=0.95 deep=0.92 bend=-0.26 twist=0.24 nod=-0.08 waist=0.1",
     "anger": "tall=0.86 wide=1.1 deep=1.06 nod=0.12 spikes=0.075 relief=1.8",
-    "rage": "tall=0.92 wide=1.18 deep=1.14 nod=0.08 spikes=0.16 relief=2.6 waist=-0.06 hop=0.05",
+    "rage": "tall=0.92 wide=1.18 deep=1.14 nod=0.08 spikes=0.16 relief=2.6 waist=-0.06",
     "anticipation": "tall=1.1 wide=0.96 deep=0.98 nod=0.12 bend=0.2 twist=-0.18 pole=0.05",
-    "contempt": "tall=1.04 wide=0.97 bend=-0.12 nod=-0.22 twist=0.22 pear=-0.05",
+    "contempt": "tall=1.04 wide=0.97 bend=-0.12 nod=-0.16 twist=0.2 pear=-0.05",
 }
 HEIGHT = 0.045
 WAVES, SEED = 14, 31
@@ -107,11 +107,9 @@ def warp(points, body):
     result = points * np.column_stack(sizes)
     result[:, 1] += body["pole"] * fields.smoothstep(0.6, 1.05, y) * 1.6
     result[:, 1] -= body["sag"] * (1 - 0.5 * fields.smoothstep(-1.0, 0.6, y))
-    up = (y + 1) / 2
-    foot = np.array([0, -body["tall"], 0])
-    result = _turn(result - foot, 1, -body["twist"] * up)
-    result = _turn(result, 2, -body["bend"] * up)
-    result = _turn(result, 0, body["nod"] * up) + foot
-    # the foot stays where the ground is, unless the planet hops
-    result[:, 1] += body["tall"] - 1 + body["hop"]
+    # the south pole turns less than the north pole
+    share = 0.65 + 0.35 * y
+    for axis, word, sign in ((1, "twist", -1), (2, "bend", -1), (0, "nod", 1)):
+        result = _turn(result, axis, sign * body[word] * share)
+    result[:, 1] += body["hop"]
     return result

@@ -20,6 +20,13 @@ GAINS = {
 LIPS = 0.74
 THICK = {"mouth_grand": 0.25, "mouth_askew": 0.24, "mouth_sleepy": 0.2, "mouth_prim": 0.3}
 TEETH = 6
+# of each row of the tongue: half its width, its height as a share of the gap, at rest and lifted,
+# how far ahead it lies, and how far it comes out
+ROWS = (
+    (0.62, 0.0, 0.05, -0.16, 0.0),
+    (0.52, 0.3, 0.4, -0.05, 0.15),
+    (0.34, 0.02, 0.3, 0.0, 0.45),
+)
 BALL_SHARE = 0.94
 BALL_RINGS = np.array([0.27, 0.31, 0.60, 0.66, 1.25, 1.95])
 SPOKES = {"eye_moon": 12} | dict.fromkeys(("eye_middle", "eye_north", "eye_east", "eye_south"), 8)
@@ -39,9 +46,10 @@ def manner(name, p):
         q |= {"smile_l": 0.25 * p["smile_l"], "smile_r": 0.14 + 1.2 * p["smile_r"]}
         q["jaw_side"] = p["jaw_side"] - moved * (1 - closed)
     elif name == "mouth_sleepy":
-        q |= {key: 0.7 * p[key] for key in ("jaw_open", "stretch", "smile_l", "smile_r")}
+        # it yawns rather than smiles
+        q |= {key: 0.4 * p[key] for key in ("stretch", "smile_l", "smile_r")}
         q["frown"] = 0.22 + 0.7 * p["frown"]
-        q["jaw_open"] = q["jaw_open"] + 0.12
+        q["jaw_open"] = 0.12 + 1.15 * p["jaw_open"] + 0.1 * (p["smile_l"] + p["smile_r"])
     else:
         spread = p["stretch"] + p["smile_l"] + p["smile_r"]
         q |= {key: 0.55 * p[key] for key in ("stretch", "smile_l", "smile_r")}
@@ -91,13 +99,14 @@ def mouth(name, p):
 
 def _tongue(name, q, half, forward):
     """Return the tongue, three by three, (9, 3)."""
-    upper, lower = features.lips(q, np.array([-0.6, 0.0, 0.6]), GAINS[name])
-    gap = (upper - lower)[:, 1]
     rows = []
-    for share, height, ahead in ((0.0, 0.05, -0.16), (0.3, 0.4, -0.05), (0.02, 0.15, 0.0)):
-        lift = (share + height * q["tongue_up"]) * np.array([0.4, 1.0, 0.4])
-        tip = lower + np.stack([0 * gap, gap * lift], axis=1)
-        rows.append(modelling.raised(half * tip, forward + ahead))
+    for wide, share, height, ahead, out in ROWS:
+        upper, lower = features.lips(q, np.array([-wide, 0.0, wide]), GAINS[name])
+        gap = (upper - lower)[:, 1]
+        lift = (share + height * q["tongue_up"]) * np.array([0.45, 1.0, 0.45])
+        line = lower + np.stack([0 * gap, gap * lift], axis=1)
+        z = forward + ahead + out * half * q["tongue_up"]
+        rows.append(modelling.raised(half * line, z))
     return np.concatenate(rows)
 
 
