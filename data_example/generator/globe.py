@@ -35,7 +35,7 @@ LID = {
     "eye_south": (0.94, 0.86, 0.60),
 }
 WHITE, PUPIL = (0.98, 0.98, 0.95), (0.04, 0.03, 0.05)
-ROW = {"unit": "cm", "up_axis": "y", "pivot": "0 -12 0", "face_unit": "10"}
+ROW = {"unit": "cm", "up_axis": "y", "pivot": "0 0 0", "face_unit": "10"}
 # how far the skin goes along with the border of a mouth and of an eye, and how far it reaches
 PULL = {"mouth": 0.62, "eye": 0.4}
 REACH = 0.16
