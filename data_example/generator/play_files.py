@@ -18,7 +18,8 @@ from data_example.generator import (
 )
 
 CRF, SOUND_BITS = "28", 40000
-# the extremes of `faces` whose pictures a person labelled; smaller pictures, smaller errors
+# the extremes of `faces` whose pictures a person labelled, and pictures of the vignette with her
+# head turned
 LABELLED = (
     "emotion_neutral",
     "emotion_ecstasy",
@@ -38,16 +39,25 @@ LABELLED = (
     "blink_half",
     "blink_closed",
 )
+TURNED = (69, 121, 160, 219, 235, 278)
+# smaller pictures, smaller errors
 NOISE_PX = 0.2
-MARKER_SEED, SOUND_SEED, GRAIN_SEED = 64, 74, 84
+LABEL_SEED, MARKER_SEED, SOUND_SEED, GRAIN_SEED = 33, 64, 74, 84
 
 
-def label_text(neutral_brows, seed=33):
-    """Return the labels of `faces` as the text of a labels file."""
+def labelled(name):
+    """Return the labelled pictures of a take."""
+    if name == "vignette":
+        return TURNED
     at = play.extreme_frames()
-    frames = sorted(at[name] * shots.RATE // play.RATE for name in LABELLED)
-    shown = play_truth.played("faces", shots.RATE)
-    return labels.table(play_truth.drawn(shown, frames, neutral_brows), seed, NOISE_PX)
+    return tuple(sorted(at[extreme] * shots.RATE // play.RATE for extreme in LABELLED))
+
+
+def label_text(name, neutral_brows):
+    """Return the labels of a take as the text of a labels file."""
+    shown, seed = play_truth.played(name, shots.RATE), LABEL_SEED + list(play.TAKES).index(name)
+    contours = play_truth.drawn(shown, labelled(name), neutral_brows)
+    return labels.table(contours, seed, NOISE_PX)
 
 
 def film_sound(take, seed):
@@ -77,8 +87,8 @@ def write_all(folder, names=tuple(play.TAKES)):
         if take.phones:
             said = [word for word, _, _ in spoken.words(take.phones) if word]
             (here / f"{name}.txt").write_text(" ".join(said) + "\n", encoding="utf-8")
-        if name == "faces":
-            (folder / "labels" / f"{name}.csv").write_text(label_text(brows), encoding="utf-8")
+        text = label_text(name, brows)
+        (folder / "labels" / f"{name}.csv").write_text(text, encoding="utf-8")
         pictures = capture.pictures(play_truth.played(name, shots.RATE), glued, GRAIN_SEED + number)
         heard = np.asarray(film_sound(take, SOUND_SEED + number), np.float32)
         film.write(here / f"{name}.mp4", pictures, heard, CRF, SOUND_BITS)
