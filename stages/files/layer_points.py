@@ -46,7 +46,7 @@ class LayerPoints:
     offsets : a (T, P, D) float array [face units] for each group, differences from the shot's
         neutral, NaN where not observed
     neutrals : its (P, D) float array [face units] for each group
-    confidence : (T,) float array, 0..1, the least of the groups'
+    confidence : (T,) float array, 0..1, mean of the groups', by their numbers of coordinates
     """
 
     frame: np.ndarray
@@ -69,6 +69,7 @@ def read(path: str | Path, points: str) -> LayerPoints:
     groups = [(kind, driving_points.read(path, kind)) for kind in KINDS[points]]
     first = groups[0][1]
     confidence = np.stack([np.nan_to_num(driving.confidence) for _, driving in groups])
+    counts = [driving.neutral.size for _, driving in groups]
     return LayerPoints(
         first.frame,
         first.time_s,
@@ -76,7 +77,7 @@ def read(path: str | Path, points: str) -> LayerPoints:
         [Group(kind, driving.names) for kind, driving in groups],
         [driving.points - driving.neutral for _, driving in groups],
         [driving.neutral for _, driving in groups],
-        confidence.min(axis=0),
+        np.average(confidence, axis=0, weights=counts),
     )
 
 
