@@ -78,6 +78,48 @@ rule assemble_rig:
         " 2> {log:q}"
 
 
+rule shape_motion:
+    input:
+        curve_channels_source,
+        solution=solution_of,
+        head_motion=head_motion_of,
+        rig=rig_of,
+    output:
+        shaped="results/takes/{shot}/{character}/shaped.parquet",
+        shaped_head="results/takes/{shot}/{character}/shaped_head.parquet",
+    log:
+        "logs/shape_motion/{shot}/{character}.log",
+    benchmark:
+        "logs/shape_motion/{shot}/{character}.tsv"
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("shape_motion"),
+        channels=curve_channels,
+        head_gain=character_cell("head_gain"),
+        head_limit=character_cell("head_limit"),
+        head_axes=character_cell("head_axes"),
+        follow_s=character_cell("follow_s"),
+        damping=character_cell("damping"),
+        followed=character_cell("followed"),
+    shell:
+        "python -m stages.shape_motion"
+        " --solution {input.solution:q}"
+        " --head-motion {input.head_motion:q}"
+        " --rig {input.rig:q}"
+        " --channels={params.channels:q}"
+        " --head-gain={params.head_gain:q}"
+        " --head-limit={params.head_limit:q}"
+        " --head-axes={params.head_axes:q}"
+        " --follow-s {params.follow_s}"
+        " --damping {params.damping}"
+        " --followed {params.followed:q}"
+        " --shaped {output.shaped:q}"
+        " --shaped-head {output.shaped_head:q}"
+        " 2> {log:q}"
+
+
 rule learn_dynamics:
     input:
         solutions=basis_solutions,
@@ -105,8 +147,8 @@ rule smooth_weights:
     input:
         cut_film_source,
         curve_channels_source,
-        solution=solution_of,
-        head_motion=head_motion_of,
+        solution=smoothed_solution,
+        head_motion=smoothed_head_motion,
         expression=expression_of,
         rig=rig_of,
         dynamics=dynamics_of,

@@ -172,14 +172,6 @@ def check_cast(tables, row):
     """Refuse a take whose points do not exist, or do not fit the character's method."""
     method = row_of(tables["characters"], "character", row.cells["character"])["method"]
     points, wanted = row.cells["points"], show.listed(row.cells["shots"])
-    for name in ("expressions", "actor_masks") if method == "layers" else ():
-        if not rows_of(tables[name], "actor", row.cells["actor"]):
-            message = f"method layers needs rows of {row.cells['actor']} in {name}.tsv; add them"
-            refuse("cast", row, "actor", message)
-    fitting = POINTS[method]
-    if points not in fitting:
-        message = f"method {method} is driven by {' or '.join(fitting)}; write that"
-        refuse("cast", row, "points", message)
     sessions = [
         other.cells["session"]
         for other in tables["sessions"]

@@ -106,3 +106,67 @@ def layer_outputs(shot, character):
         return []
     wanted = [f"{folder}/layers/{layer}.csv" for layer in ("emotion", "speech", "blink")]
     return wanted + ([f"{folder}/delivery.parquet"] if row["delivery_shapes"] else [])
+
+
+def proposal_points(wildcards):
+    """Return the points by which an actor's extremes are proposed: what drives the layers."""
+    return proposing(wildcards.actor)
+
+
+def proposing(actor):
+    """Return the points of an actor's first character that layers drive, or nothing."""
+    played = rows_of(SHOW["cast"], "actor", actor)
+    layered = [row for row in played if character_row(row["character"])["method"] == "layers"]
+    return layered[0]["points"] if layered else ""
+
+
+def proposal_rows(wildcards):
+    """Return the rows of the basis shots in which extremes are looked for."""
+    return shots_of(wildcards.actor, proposing(wildcards.actor), ["yes"])
+
+
+def proposal_shots(wildcards):
+    """Return the names of these shots."""
+    return [row["shot"] for row in proposal_rows(wildcards)]
+
+
+def proposal_expressions(wildcards):
+    """Return their expressions."""
+    return expand("results/shots/{shot}/expression.parquet", shot=proposal_shots(wildcards))
+
+
+def proposal_cells(column):
+    """Return a function that gives a column of these shots, a dash for a blank cell."""
+
+    def values(wildcards):
+        return [row[column] or "-" for row in proposal_rows(wildcards)]
+
+    return values
+
+
+def proposal_films(wildcards):
+    """Return the films of these shots that exist."""
+    return present(proposal_cells("video")(wildcards))
+
+
+def proposal_phone_shots(wildcards):
+    """Return the names of these shots whose phones are given or can be found."""
+    known = ("phones", "transcript", "words")
+    return [row["shot"] for row in proposal_rows(wildcards) if any(row[c] for c in known)]
+
+
+def proposal_phones(wildcards):
+    """Return these phones."""
+    return expand("results/shots/{shot}/phones.parquet", shot=proposal_phone_shots(wildcards))
+
+
+def lid_points_of_actor(wildcards):
+    """Return the markers of the lids, of the session of the first of these shots."""
+    return session_of(proposal_shots(wildcards)[0])["lid_points"]
+
+
+def expression_pages():
+    """Return the proposed extremes of everyone who drives layers."""
+    actors = dict.fromkeys(row.cells["actor"] for row in SHOW["cast"])
+    wanted = [actor for actor in actors if proposing(actor)]
+    return expand("results/actors/{actor}/expressions/index.html", actor=wanted)

@@ -2,7 +2,7 @@
 
 Needs expression.parquet of the shots, expressions.tsv and the character's folder. Makes rig.npz,
 poses.parquet and simplices.npz of each actor and character, layers.parquet and directed.parquet of
-each take, and what is asked for of its projection onto blendshapes; and proposals of extremes.
+each take, the curves of each layer, and for each actor proposals of extremes.
 """
 
 
@@ -208,60 +208,6 @@ rule direct_layers:
         " 2> {log:q}"
 
 
-use rule assemble_blendshapes as assemble_delivery with:
-    input:
-        character_source("neutral"),
-        shapes=blendshapes_of_poses,
-    output:
-        rig="results/cast/{actor}/{character}/delivery_rig.npz",
-    log:
-        "logs/assemble_delivery/{actor}/{character}.log",
-    benchmark:
-        "logs/assemble_delivery/{actor}/{character}.tsv"
-    wildcard_constraints:
-        character=delivered_on_blendshapes(),
-    params:
-        code=code_of("assemble_blendshapes"),
-        neutral=character_path("neutral"),
-        shape_folder=delivery_folder,
-        unit=character_cell("unit"),
-        up_axis=character_cell("up_axis"),
-        pivot=character_cell("pivot"),
-        face_unit=character_cell("face_unit"),
-
-
-rule project_blendshapes:
-    input:
-        character_source("channels"),
-        rig=rig_of,
-        weights="results/takes/{shot}/{character}/weights.parquet",
-        delivery_rig=delivery_rig_of,
-    output:
-        delivery="results/takes/{shot}/{character}/delivery.parquet",
-        csv="results/takes/{shot}/{character}/delivery.csv",
-    log:
-        "logs/project_blendshapes/{shot}/{character}.log",
-    benchmark:
-        "logs/project_blendshapes/{shot}/{character}.tsv"
-    wildcard_constraints:
-        character=delivered_on_blendshapes(),
-    conda:
-        "../envs/stages.yaml"
-    threads: 1
-    params:
-        code=code_of("project_blendshapes"),
-        channels=character_path("channels"),
-    shell:
-        "python -m stages.project_blendshapes"
-        " --rig {input.rig:q}"
-        " --weights {input.weights:q}"
-        " --delivery-rig {input.delivery_rig:q}"
-        " --channels={params.channels:q}"
-        " --delivery {output.delivery:q}"
-        " --csv {output.csv:q}"
-        " 2> {log:q}"
-
-
 rule export_layers:
     input:
         rig=rig_of,
@@ -288,4 +234,56 @@ rule export_layers:
         " --emotion {output.emotion:q}"
         " --speech {output.speech:q}"
         " --blink {output.blink:q}"
+        " 2> {log:q}"
+
+
+rule propose_expressions:
+    input:
+        proposal_films,
+        expressions=proposal_expressions,
+        phones=proposal_phones,
+        visemes=data_table("visemes.tsv"),
+        extremes=data_table("extremes.tsv"),
+        template=template("expressions.html"),
+    output:
+        page=report(
+            "results/actors/{actor}/expressions/index.html",
+            caption="../report/expressions.rst",
+            category="Expressions",
+            labels={"actor": "{actor}"},
+        ),
+        table="results/actors/{actor}/expressions/expressions.tsv",
+    log:
+        "logs/propose_expressions/{actor}.log",
+    benchmark:
+        "logs/propose_expressions/{actor}.tsv"
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("propose_expressions"),
+        shots=proposal_shots,
+        emotions=proposal_cells("expression"),
+        phone_shots=proposal_phone_shots,
+        points=proposal_points,
+        lid_points=lid_points_of_actor,
+        videos=proposal_cells("video"),
+        min_confidence=config["min_confidence"],
+    shell:
+        "python -m stages.propose_expressions"
+        " --actor {wildcards.actor:q}"
+        " --shots {params.shots:q}"
+        " --expressions {input.expressions:q}"
+        " --emotions {params.emotions:q}"
+        " --phone-shots {params.phone_shots:q}"
+        " --phones {input.phones:q}"
+        " --visemes {input.visemes:q}"
+        " --points {params.points:q}"
+        " --lid-points={params.lid_points:q}"
+        " --videos {params.videos:q}"
+        " --extremes {input.extremes:q}"
+        " --min-confidence {params.min_confidence}"
+        " --template {input.template:q}"
+        " --page {output.page:q}"
+        " --table {output.table:q}"
         " 2> {log:q}"
