@@ -36,7 +36,7 @@ def single_residuals(model, frames) -> np.ndarray:
     coefficients = centre[-len(model.layer) :]
     for frame in frames:
         objective = layer_objective.at(model, layer_model.project(model, frame), 0.0, 0.0, None)
-        points = layer_starts.singles(model, objective, coefficients, 1e-12)
+        points, _ = layer_starts.singles(model, objective, coefficients, coefficients, 1e-12)
         terms.append([layer_objective.value(model, objective, point) for point in points])
     return np.array(terms)
 

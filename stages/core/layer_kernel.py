@@ -166,24 +166,28 @@ def _gauss_newton(gram, pairs, first, point, count, hessian):
     """Fill in twice ``J' gram J``, where J is the derivative of u by the point."""
     hessian[:] = 0.0
     weights = len(point) - count
-    rows = np.empty((weights, count))
+    layers = weights * count // len(first)
+    values, wide, rows = point[weights:], np.empty(count), np.empty((weights, count))
     for p in range(len(pairs)):
         start, other = pairs[p, 0] * count, pairs[p, 1] * count
         rows[:] = 0.0
+        for j in range(count):
+            wide[j] = 2.0 * point[first[other + j]]
         for k in range(count):
-            weight, value = first[start + k], point[weights + k]
-            scale = 2.0 * point[weight]
-            for j in range(count):
-                entry = gram[start + k, other + j]
-                hessian[weights + k, weights + j] += scale * point[first[other + j]] * entry
+            block, weight = gram[start + k, other : other + count], first[start + k]
+            target, row = hessian[weights + k, weights:], rows[weight]
+            scale, value = point[weight], 2.0 * values[k]
+            if scale != 0.0:
+                for j in range(count):
+                    target[j] += scale * wide[j] * block[j]
             if value != 0.0:
                 for j in range(count):
-                    rows[weight, j] += 2.0 * value * gram[start + k, other + j]
-        for weight in range(weights):
+                    row[j] += value * block[j]
+        for weight in range(pairs[p, 0] * layers, (pairs[p, 0] + 1) * layers):
+            target, row = hessian[weight, weights:], rows[weight]
             for j in range(count):
-                entry = rows[weight, j]
-                hessian[weight, first[other + j]] += entry * point[weights + j]
-                hessian[weight, weights + j] += entry * point[first[other + j]]
+                hessian[weight, first[other + j]] += row[j] * values[j]
+                target[j] += 0.5 * row[j] * wide[j]
     for weight in range(weights):
         for j in range(weights, len(point)):
             hessian[j, weight] = hessian[weight, j]

@@ -18,7 +18,8 @@ class Model(NamedTuple):
     basis : (D, K) float array, extremes less the neutral [balanced]
     layer : (K,) int array, the layer of each extreme
     masks : (R, D) float array, one at every coordinate in sum
-    lip_mask, speech_layer, closed : int, mask, layer and extreme of the lip bias; -1 without
+    lips : (N,) int array, entries of the solver's point that closed lips pull; none without bias
+    closed_lips : (N,) float array, where they pull them
     pairs : (N, 2) int array, masks that overlap, each with itself too
     gram : (R * K, R * K) float array, ``(M_l B)'(M_m B)``
     scale : float, mean of the Gram matrix's diagonal where it is not zero
@@ -31,9 +32,8 @@ class Model(NamedTuple):
     basis: np.ndarray
     layer: np.ndarray
     masks: np.ndarray
-    lip_mask: int
-    speech_layer: int
-    closed: int
+    lips: np.ndarray
+    closed_lips: np.ndarray
     pairs: np.ndarray
     gram: np.ndarray
     scale: float
@@ -101,6 +101,16 @@ def _gram(basis, masks, pairs):
     return gram
 
 
+def _lip_bias(layer, regions, lip_mask, speech_layer, closed):
+    """Return which entries of the solver's point closed lips pull, and where to."""
+    layers = int(layer.max()) + 1
+    if lip_mask < 0:
+        return np.zeros(0, np.int64), np.zeros(0)
+    spoken = np.flatnonzero(layer == speech_layer)
+    places = np.append(lip_mask * layers + np.arange(layers), regions * layers + spoken)
+    return places, np.append(np.arange(layers) == speech_layer, spoken == closed).astype(float)
+
+
 def build(
     basis: np.ndarray,
     layer: np.ndarray,
@@ -139,9 +149,7 @@ def build(
         basis,
         layer,
         masks,
-        lip_mask,
-        speech_layer,
-        closed,
+        *_lip_bias(layer, regions, lip_mask, speech_layer, closed),
         pairs,
         gram,
         scale,
@@ -173,7 +181,7 @@ def project(model: Model, frame: np.ndarray) -> Quadratic | None:
             f" with {np.isinf(frame).sum()} infinite values"
         )
     missing = np.isnan(frame)
-    if missing.sum() * 2 > len(frame):
+    if 2 * np.count_nonzero(missing) > len(frame):
         return None
     known = np.where(missing, 0.0, frame)
     linear = ((model.masks * known) @ model.basis).ravel()

@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+import numba
 import numpy as np
 
 from stages.core import layer_model
@@ -41,28 +42,41 @@ def at(
     temporal : float, at least 0
     before : (R * J + K,) float array, the last frame's point; None on the first frame
     """
-    regions, layers, _ = model.sizes
     held = 0.0 if before is None else temporal
-    before = np.zeros(len(model.group)) if before is None else before
-    closing, closed = np.zeros(len(before)), np.zeros(len(before))
+    target = np.zeros(len(model.group)) if before is None else before.copy()
+    pull, fixed = np.full(len(model.group), held), 0.0
     if closeness > 0.0:
-        start = model.lip_mask * layers
-        closing[start : start + layers] = closeness
-        closed[start + model.speech_layer] = 1.0
-        closing[regions * layers :][model.layer == model.speech_layer] = closeness
-        closed[regions * layers + model.closed] = 1.0
-    pull = closing + held
-    target = (closing * closed + held * before) / np.where(pull > 0.0, pull, 1.0)
-    fixed = np.sum(closing * closed**2 + held * before**2 - pull * target**2)
-    data = 1.0 - closeness
-    scaled = layer_model.Quadratic(
-        data * quadratic.energy, data * quadratic.linear, data * quadratic.gram, quadratic.span
-    )
-    return Objective(scaled, pull, target, float(fixed))
+        old, aim = target[model.lips], model.closed_lips
+        pull[model.lips] += closeness
+        mean = (held * old + closeness * aim) / (held + closeness)
+        fixed = float(np.sum(held * (old - mean) ** 2 + closeness * (aim - mean) ** 2))
+        target[model.lips] = mean
+        energy, linear, gram, span = quadratic
+        data = 1.0 - closeness
+        quadratic = layer_model.Quadratic(data * energy, data * linear, data * gram, span)
+    return Objective(quadratic, pull, target, fixed)
 
 
 def value(model: layer_model.Model, objective: Objective, point: np.ndarray) -> float:
     """Return the objective at a point."""
-    u = point[model.first] * point[model.second]
-    pulled = np.sum(objective.pull * (point - objective.target) ** 2)
-    return float(layer_model.data(objective.quadratic, u) + pulled + objective.fixed)
+    quadratic, pull, target, fixed = objective
+    varying = _varying(
+        quadratic.gram, quadratic.linear, pull, target, model.first, model.second, point
+    )
+    return varying + quadratic.energy + fixed
+
+
+@numba.njit(cache=True)
+def _varying(gram, linear, pull, target, first, second, point):
+    """Return the objective less what does not depend on the point."""
+    total = 0.0
+    moved = point[first] * point[second]
+    used = np.flatnonzero(moved)
+    for i in used:
+        curved = -2.0 * linear[i]
+        for j in used:
+            curved += gram[i, j] * moved[j]
+        total += curved * moved[i]
+    for i in range(len(point)):
+        total += pull[i] * (point[i] - target[i]) ** 2
+    return total

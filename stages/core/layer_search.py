@@ -18,6 +18,19 @@ DRAWS = 4
 UNSEEN = 1e-6
 
 
+class Guide(NamedTuple):
+    """Hold where a search's convex problems ended, from where the next frame's may start.
+
+    Attributes
+    ----------
+    relaxed : (R * K,) float array, displacements of the relaxation
+    alone : (K,) float array, coefficients of each layer on its own
+    """
+
+    relaxed: np.ndarray
+    alone: np.ndarray
+
+
 class Found(NamedTuple):
     """Hold what a search came to.
 
@@ -26,13 +39,13 @@ class Found(NamedTuple):
     value : float, the objective
     point : (R * J + K,) float array
     bound : float, no point has a lower objective
-    relaxed : (R * K,) float array, displacements of the relaxation
+    guide : what the next search may start from
     """
 
     value: float
     point: np.ndarray
     bound: float
-    relaxed: np.ndarray
+    guide: Guide
 
 
 def descend(
@@ -61,7 +74,7 @@ def best(
     model: layer_model.Model,
     objective: layer_objective.Objective,
     before: np.ndarray | None,
-    relaxed: np.ndarray | None,
+    guide: Guide | None,
 ) -> Found:
     """Return the best that was found from the last frame's point and from others.
 
@@ -73,7 +86,7 @@ def best(
     ----------
     model, objective : see `layer_model` and `layer_objective`
     before : (R * J + K,) float array, the last frame's point; None on the first frame
-    relaxed : (R * K,) float array, the last frame's relaxation; None on the first frame
+    guide : of the last frame; None on the first
     """
     regions, layers, _ = model.sizes
     enough = CLOSE_ENOUGH * model.scale
@@ -81,22 +94,24 @@ def best(
     value, point = descend(model, objective, starts[0])
     heavy = point[: regions * layers].reshape(regions, layers).argmax(axis=0)
     share = (np.arange(regions)[:, None] == heavy).astype(float).ravel()
-    if relaxed is None:
-        relaxed = np.full(len(model.first), 1.0 / len(model.layer))
-    relaxed, bound = layer_relaxation.solve(model, objective, share, relaxed)
+    if guide is None:
+        guide = Guide(np.full(len(model.first), 1.0 / len(model.layer)), point[regions * layers :])
+    relaxed, bound = layer_relaxation.solve(model, objective, share, guide.relaxed)
+    alone = guide.alone
     if value - bound > enough:
         held = point[regions * layers :]
         starts.append(layer_relaxation.factors(model, relaxed, held))
-        for alone in layer_starts.singles(model, objective, held, enough):
-            if before is None or layer_objective.value(model, objective, alone) < value - enough:
-                starts.append(alone)
+        points, alone = layer_starts.singles(model, objective, held, alone, enough)
+        for single in points:
+            if before is None or layer_objective.value(model, objective, single) < value - enough:
+                starts.append(single)
         for start in starts[1:]:
             other, place = descend(model, objective, start)
             if other < value - enough:
                 value, point = other, place
     if before is not None:
         value, point = _held(model, objective, before, value, point)
-    return Found(value, point, bound, relaxed)
+    return Found(value, point, bound, Guide(relaxed, alone))
 
 
 def _held(

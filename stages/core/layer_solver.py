@@ -31,13 +31,13 @@ class State(NamedTuple):
     weights : (R, J) float array
     coefficients : (K,) float array
     amplitudes : (J,) float array
-    relaxed : (R * K,) float array, where the next relaxation starts
+    guide : where the next frame's convex problems start; None = anywhere
     """
 
     weights: np.ndarray
     coefficients: np.ndarray
     amplitudes: np.ndarray
-    relaxed: np.ndarray
+    guide: layer_search.Guide | None = None
 
 
 class Solution(NamedTuple):
@@ -120,7 +120,7 @@ def check(model: layer_model.Model, settings: Settings, frames, closeness) -> No
     near = np.asarray(closeness)
     if not ((near >= 0.0) & (near <= 1.0)).all():
         raise ValueError(f"closeness must be in 0..1, got {near.min()} to {near.max()}")
-    if model.lip_mask < 0 and near.any():
+    if not len(model.lips) and near.any():
         raise ValueError(f"closeness of {near.max()} needs a lip mask, which the model has not")
 
 
@@ -135,16 +135,17 @@ def describe(
     """Return a frame's solution, given the solver's point."""
     regions, layers, _ = model.sizes
     hard = point[model.first] * point[model.second]
-    soft = hard * np.tile(amplitudes[model.layer], regions)
-    outside = np.sqrt(max(layer_model.data(quadratic, hard) - quadratic.span, 0.0))
+    inside = data = layer_model.data(quadratic, hard)
+    if (amplitudes != 1.0).any():
+        data = layer_model.data(quadratic, hard * np.tile(amplitudes[model.layer], regions))
     return Solution(
         point[: regions * layers].reshape(regions, layers),
         point[regions * layers :],
         amplitudes,
         objective,
         min(bound, objective),
-        max(layer_model.data(quadratic, soft), 0.0),
-        outside,
+        max(data, 0.0),
+        np.sqrt(max(inside - quadratic.span, 0.0)),
     )
 
 
@@ -191,15 +192,15 @@ def solve_frame(
     quadratic = layer_model.project(model, frame)
     if quadratic is None:
         return nothing(model), previous
-    before, relaxed, held = None, None, 0.0
+    before, guide, held = None, None, 0.0
     if previous is not None:
         before = np.concatenate([previous.weights.ravel(), previous.coefficients])
-        relaxed, held = previous.relaxed, settings.temporal
+        guide, held = previous.guide, settings.temporal
     objective = layer_objective.at(model, quadratic, closeness, held, before)
-    found = layer_search.best(model, objective, before, relaxed)
+    found = layer_search.best(model, objective, before, guide)
     amplitudes = _amplitudes(model, settings, objective.quadratic, found.point, previous)
     solution = describe(model, quadratic, found.point, amplitudes, found.value, found.bound)
-    state = State(solution.weights, solution.coefficients, amplitudes, found.relaxed)
+    state = State(solution.weights, solution.coefficients, amplitudes, found.guide)
     return solution, state
 
 

@@ -1,5 +1,6 @@
 """Find points from which to solve the layers, besides the last frame's."""
 
+import numba
 import numpy as np
 
 from stages.core import layer_kernel, layer_model, layer_objective
@@ -9,41 +10,67 @@ def singles(
     model: layer_model.Model,
     objective: layer_objective.Objective,
     coefficients: np.ndarray,
+    alone: np.ndarray,
     tolerance: float,
-) -> list[np.ndarray]:
+) -> tuple[list[np.ndarray], np.ndarray]:
     """Return, for each layer, the best point at which it alone has all weights.
 
     Parameters
     ----------
     model, objective : see `layer_model` and `layer_objective`
     coefficients : (K,) float array, kept where a layer has no weight
+    alone : (K,) float array, where to start, on the simplices
     tolerance : float, of the multipliers
+
+    Returns
+    -------
+    points : J arrays (R * J + K,)
+    alone : (K,) float array, the coefficients of each layer alone
     """
-    regions, layers, count = model.sizes
-    shape = (regions, count, regions, count)
-    gram = objective.quadratic.gram.reshape(shape).sum(axis=(0, 2))
-    linear = objective.quadratic.linear.reshape(regions, count).sum(axis=0)
-    pull, target = (part[regions * layers :] for part in (objective.pull, objective.target))
+    regions, layers, _ = model.sizes
+    quadratic, pull, target, _ = objective
+    alone = alone.copy()
+    hessian, gradient = _separate(
+        quadratic.gram,
+        model.pairs,
+        quadratic.linear,
+        model.layer,
+        pull[regions * layers :],
+        target[regions * layers :],
+        alone,
+    )
+    ridge = layer_model.RIDGE * model.scale
+    layer_kernel.minimise_quadratic(hessian, gradient, model.layer, alone, tolerance, ridge)
     points = []
     for j in range(layers):
-        own = np.flatnonzero(model.layer == j)
-        hessian = 2.0 * (gram[np.ix_(own, own)] + np.diag(pull[own]))
-        slope = -2.0 * (linear[own] + pull[own] * target[own])
-        chosen = coefficients.copy()
-        start = np.ascontiguousarray(coefficients[own])
-        layer_kernel.minimise_quadratic(
-            hessian,
-            hessian @ start + slope,
-            np.zeros(len(own), np.int64),
-            start,
-            tolerance,
-            layer_model.RIDGE * model.scale,
-        )
-        chosen[own] = start
-        weights = np.zeros((regions, layers))
-        weights[:, j] = 1.0
-        points.append(np.concatenate([weights.ravel(), chosen]))
-    return points
+        point = np.zeros(len(model.group))
+        point[j : regions * layers : layers] = 1.0
+        point[regions * layers :] = np.where(model.layer == j, alone, coefficients)
+        points.append(point)
+    return points, alone
+
+
+@numba.njit(cache=True)
+def _separate(gram, pairs, linear, layer, pull, target, point):
+    """Return Hessian and gradient of the objectives of all layers, each alone, as one quadratic."""
+    count = len(layer)
+    hessian = np.zeros((count, count))
+    for p in range(len(pairs)):
+        start, other = pairs[p, 0] * count, pairs[p, 1] * count
+        for k in range(count):
+            row, block = hessian[k], gram[start + k, other : other + count]
+            for j in range(count):
+                row[j] += 2.0 * block[j]
+    gradient = -2.0 * pull * target
+    for i in range(len(linear)):
+        gradient[i % count] -= 2.0 * linear[i]
+    for k in range(count):
+        hessian[k, k] += 2.0 * pull[k]
+        for j in range(count):
+            if layer[j] != layer[k]:
+                hessian[k, j] = 0.0
+            gradient[k] += hessian[k, j] * point[j]
+    return hessian, gradient
 
 
 def draws(model: layer_model.Model, count: int, seed: int) -> list[np.ndarray]:

@@ -181,10 +181,7 @@ def test_revives_a_dead_layer():
     rng = np.random.default_rng(5)
     model = built(rng)
     weights, coefficients = drawn(rng, 1)
-    dead = layer_solver.State(
-        np.tile([1.0, 0.0, 0.0], (3, 1)), coefficients[0], np.ones(3), np.zeros(3 * sum(COUNTS))
-    )
-    dead.relaxed[:: sum(COUNTS)] = 1.0
+    dead = layer_solver.State(np.tile([1.0, 0.0, 0.0], (3, 1)), coefficients[0], np.ones(3))
     frame = composed(model, weights, coefficients)[0]
     found, _ = layer_solver.solve_frame(model, layer_solver.Settings(0.0), frame, 0.0, dead)
     np.testing.assert_allclose(found.weights, weights[0], atol=1e-3)
