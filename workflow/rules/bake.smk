@@ -256,3 +256,27 @@ rule bake_controls:
         " --controls {output.controls:q}"
         " --csv {output.csv:q}"
         " 2> {log:q}"
+
+
+rule retime_sound:
+    input:
+        take_sound_source,
+    output:
+        retimed="results/takes/{shot}/{character}/sound.flac",
+    log:
+        "logs/retime_sound/{shot}/{character}.log",
+    benchmark:
+        "logs/retime_sound/{shot}/{character}.tsv"
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("retime_sound"),
+        sound=take_sound,
+        tempo=character_cell("tempo"),
+    shell:
+        "python -m stages.retime_sound"
+        " --sound {params.sound:q}"
+        " --tempo {params.tempo}"
+        " --retimed {output.retimed:q}"
+        " 2> {log:q}"

@@ -114,3 +114,25 @@ def shown_performance(wildcards):
     """Return the performance of a take that markers drive."""
     path = f"results/shots/{wildcards.shot}/performance.parquet"
     return [path] if points_of(wildcards) in ("markers", "both") else []
+
+
+def take_sound(wildcards):
+    """Return the film or sound of a shot that goes with a take."""
+    return sound_path(wildcards.shot)
+
+
+def sound_path(shot):
+    """Return the film of a shot, or the sound that was recorded without one, or a blank."""
+    row = row_of(SHOW["shots"], "shot", shot)
+    return row["video"] or row["sound"]
+
+
+def take_sound_source(wildcards):
+    """Return that file if it exists."""
+    return present([take_sound(wildcards)])
+
+
+def retimed_sound(shot, character):
+    """Return the sound of a take at another tempo than the actor's, where it has one."""
+    asked = float(character_row(character)["tempo"]) != 1 and sound_path(shot)
+    return [f"results/takes/{shot}/{character}/sound.flac"] if asked else []

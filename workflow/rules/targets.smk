@@ -29,6 +29,7 @@ def takes():
     for shot, character in cast_takes():
         folder = f"results/takes/{shot}/{character}"
         wanted += [f"{folder}/preview.mp4", *layer_outputs(shot, character)]
+        wanted += retimed_sound(shot, character)
         row = character_row(character)
         for name in show.listed(row["outputs"]):
             place = f"{folder}/delivery" if delivers(row, name) else folder
