@@ -81,13 +81,13 @@ def main(argv: Sequence[str]) -> None:
     shared, report = _shared(options, known, picked)
     basis = np.stack([_at(actor, row) for row in shared], axis=1)
     layout, basis, missing = _observed(options, actor.layout, shared, basis)
-    points = layer_points.point_names(layout)
-    masks = actor_masks.read(options.mask_table, options.actor, points, actor.known)
+    layout, basis, masks, unused = _masked(options, actor, layout, basis)
     _check_masks(options, masks.names)
     layers = list(dict.fromkeys(row.layer for row in shared))
     layer = np.array([layers.index(row.layer) for row in shared])
-    scale = _balance(options, layout, basis)
-    _check_apart(table, shared, basis, scale, layer, len(points))
+    mask_weights = masks.weights[:, layer_points.point_of(layout)]
+    scale = _balance(options, layout, basis, mask_weights)
+    _check_apart(table, shared, basis, scale, layer)
     lip_mask, closed_gap = _lips(options, actor, picked, shared, masks.names)
     made = simplices.Simplices(
         layers,
@@ -97,7 +97,7 @@ def main(argv: Sequence[str]) -> None:
         options.points,
         basis,
         scale,
-        masks.weights[:, layer_points.point_of(layout)],
+        mask_weights,
         layer,
         options.lip_points if lip_mask else "",
         lip_mask,
@@ -105,8 +105,9 @@ def main(argv: Sequence[str]) -> None:
     )
     sources = [table, options.mask_table, *options.expressions, options.poses]
     simplices.write(options.simplices, made, {"balance": options.balance}, sources)
-    simplices.write_report(options.report, [*report, *missing])
-    for row in report + missing:
+    report += missing + unused
+    simplices.write_report(options.report, report)
+    for row in report:
         if row[2] != simplices.USED:
             cli.logger.info(
                 "%s: %s", " ".join(cell for cell in row[:2] if cell), ", ".join(row[2:])
@@ -196,6 +197,20 @@ def _observed(
     return layer_points.without(layout, left_out), basis[kept], report
 
 
+def _masked(
+    options: argparse.Namespace, actor: _Actor, layout: layer_points.Layout, basis: np.ndarray
+) -> tuple[layer_points.Layout, np.ndarray, actor_masks.ActorMasks, list[Row]]:
+    """Read the masks of the points, and leave out the points that the table gives no weight."""
+    names = layer_points.point_names(layout)
+    masks = actor_masks.read(options.mask_table, options.actor, names, actor.known)
+    used = masks.weights.any(axis=0)
+    left_out = np.flatnonzero(~used)
+    report = [("", names[i], simplices.LEFT_OUT, "has weight 0 in the masks") for i in left_out]
+    kept = used[layer_points.point_of(layout)]
+    masks = masks._replace(weights=masks.weights[:, used])
+    return layer_points.without(layout, left_out.tolist()), basis[kept], masks, report
+
+
 def _check_masks(options: argparse.Namespace, masks: Sequence[str]) -> None:
     """Refuse masks that the character does not have, or lacks."""
     own = rig.read_any(options.rig).mask_names
@@ -209,7 +224,7 @@ def _check_masks(options: argparse.Namespace, masks: Sequence[str]) -> None:
 
 
 def _balance(
-    options: argparse.Namespace, layout: layer_points.Layout, basis: np.ndarray
+    options: argparse.Namespace, layout: layer_points.Layout, basis: np.ndarray, masks: np.ndarray
 ) -> np.ndarray:
     """Return the factors (D,) of the coordinates."""
     group = layer_points.group_of(layout)
@@ -217,7 +232,7 @@ def _balance(
         if np.abs(basis[group == number]).max() < STILL:
             message = f"the {own.kind} points are at the neutral in every extreme"
             raise errors.InputError(options.expression_table, f"{message}: pick other frames")
-    return coordinate_balance.factors(basis, group, options.balance)
+    return coordinate_balance.factors(basis, group, masks, options.balance)
 
 
 def _check_apart(
@@ -226,7 +241,6 @@ def _check_apart(
     basis: np.ndarray,
     scale: np.ndarray,
     layer: np.ndarray,
-    points: int,
 ) -> None:
     """Refuse extremes of one layer that nearly coincide."""
     pairs = near_extremes.find(basis * scale[:, None], layer)
@@ -235,7 +249,7 @@ def _check_apart(
     named = []
     for pair in pairs[:SHOWN]:
         first, second = shared[pair.first], shared[pair.second]
-        apart = np.linalg.norm(basis[:, pair.first] - basis[:, pair.second]) / np.sqrt(points)
+        apart = np.sqrt(np.mean((basis[:, pair.first] - basis[:, pair.second]) ** 2))
         lines = f"lines {first.line} and {second.line}: {first.layer} {first.name}"
         share = f"{pair.share:.1%} of the mean distance in the layer"
         named.append(f"{lines} and {second.name} are {apart:.2g} face units apart, {share}")

@@ -3,7 +3,8 @@
 Columns: actor, mask, point, weight. A point is one of the film, a marker, or a contour, which
 stands for all its points; a row that names a point overrides its contour's. A blank weight is 1.
 One mask may have `*`: the points that no row lists, and what is left to one at those that others
-list. The weights of every point sum to one.
+list. The weights of every point sum to one. A point whose rows all say 0 is not used: brows of a
+film on a head that nods, say, where markers see them better.
 """
 
 from collections.abc import Collection, Sequence
@@ -26,7 +27,7 @@ class ActorMasks(NamedTuple):
     Attributes
     ----------
     names : the masks
-    weights : (R, P) float array, one in sum at every point
+    weights : (R, P) float array, one in sum at every point, 0 at those that are not used
     """
 
     names: list[str]
@@ -60,12 +61,19 @@ def read(path: str | Path, actor: str, points: Sequence[str], known: Collection[
         message = f"{OTHERS} stands in {' and '.join(rest)} of {actor}: leave it to one mask"
         raise errors.InputError(path, message)
     for mask in rest:
-        own = np.isnan(weights[names.index(mask)])
+        own = np.isnan(weights[names.index(mask)]) & ~_refused(weights)
         others = np.nansum(np.delete(weights, names.index(mask), axis=0), axis=0)
         weights[names.index(mask), own] = np.maximum(1 - others[own], 0.0)
+    refused = _refused(weights)
     weights = np.nan_to_num(weights)
-    _check(path, actor, names, points, weights)
-    return ActorMasks(names, weights / weights.sum(axis=0))
+    kept = [point for point, out in zip(points, refused, strict=True) if not out]
+    _check(path, actor, names, kept, weights[:, ~refused])
+    return ActorMasks(names, weights / np.where(refused, 1.0, weights.sum(axis=0)))
+
+
+def _refused(weights: np.ndarray) -> np.ndarray:
+    """Return the points (P,) whose rows all say 0, of weights with NaN where there is no row."""
+    return np.any(weights == 0, axis=0) & ~np.any(weights > 0, axis=0)
 
 
 def _rows(path: str | Path, actor: str, known: Collection[str]) -> dict[tuple[str, str], float]:
@@ -97,6 +105,10 @@ def _check(
     path: str | Path, actor: str, names: Sequence[str], points: Sequence[str], weights: np.ndarray
 ) -> None:
     """Refuse masks that are no partition of the points, or one that has none."""
+    for mask, own in zip(names, weights, strict=True):
+        if not own.any():
+            message = f"mask {mask} of {actor} has none of the {len(points)} points that drive"
+            raise errors.InputError(path, f"{message}: give it points, or see points in cast.tsv")
     sums = weights.sum(axis=0)
     left_out = [point for point, total in zip(points, sums, strict=True) if total == 0]
     if left_out:
@@ -112,7 +124,3 @@ def _check(
         ]
         message = f"the masks of {actor} sum to {sums[worst]:g} at {points[worst]}"
         raise errors.InputError(path, f"{message} ({', '.join(shares)}): make it 1")
-    for mask, own in zip(names, weights, strict=True):
-        if not own.any():
-            message = f"mask {mask} of {actor} has none of the {len(points)} points that drive"
-            raise errors.InputError(path, f"{message}: give it points, or see points in cast.tsv")

@@ -64,7 +64,8 @@ def read(
     values = expression_proposals.filled(offsets)
     try:
         group = layer_points.group_of(layout)
-        balanced = values * coordinate_balance.factors(values.T, group, "variance")
+        whole = np.ones((1, values.shape[1]))
+        balanced = values * coordinate_balance.factors(values.T, group, whole, "variance")
     except ValueError as error:
         message = "its points never move: is this the right shot?"
         raise errors.InputError(paths[0], message) from error

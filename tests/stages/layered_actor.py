@@ -141,7 +141,7 @@ class LayeredActor:
             "poses": self.folder / "poses.parquet",
             "rig": self.folder / "rig.npz",
             "extremes": EXTREMES_TABLE,
-            "balance": "variance",
+            "balance": "mask_variance",
             "lip-points": LIPS,
             "lip-mask": "mouth",
             "lip-sigma": 0.02,

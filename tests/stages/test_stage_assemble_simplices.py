@@ -7,7 +7,7 @@ import pytest
 from layered_actor import EXTREMES, FIRST, LIPS, MARKERS, MASKS, POINTS
 
 from stages.core import coordinate_balance
-from stages.files import errors, layer_points, simplices
+from stages.files import errors, layer_points, layers, simplices
 
 
 @pytest.fixture
@@ -22,7 +22,7 @@ def test_extremes_come_back(actor):
     np.testing.assert_allclose(made.basis, actor.basis, atol=1e-6)
     np.testing.assert_array_equal(made.layer, layered_actor.LAYER)
     group = np.repeat([0, 1], actor.sizes)
-    expected = coordinate_balance.factors(made.basis, group, "variance")
+    expected = coordinate_balance.factors(made.basis, group, made.mask_weights, "mask_variance")
     np.testing.assert_allclose(made.scale, expected, rtol=1e-12)
     np.testing.assert_array_equal(made.mask_weights.argmax(axis=0), actor.mask)
     np.testing.assert_array_equal(made.mask_weights.max(axis=0), 1)
@@ -91,6 +91,20 @@ def test_points_missing_on_an_extreme_are_left_out_and_reported(actor):
     message = "42 of the 42 points were not observed on some frame, such as U0, not observed on "
     with pytest.raises(errors.InputError, match=message + "emotion grief, frame 12 of faces: pick"):
         actor.assemble()
+
+
+def test_points_of_no_weight_are_left_out_and_reported(actor):
+    actor.masks.append(["mia", "upper", "U0", "0"])
+    actor.masks[1] = ["mia", "mouth", "lips", "0"]
+    actor.write()
+    made = simplices.read(actor.assemble(lip_points="M0,M1"))
+    kept = [name for name in POINTS if not name.startswith("lips")]
+    assert layer_points.point_names(made.layout) == [*MARKERS[1:], *kept]
+    report = actor.report()
+    assert report["", "U0"] == report["", "lips_03"] == "left out"
+    np.testing.assert_allclose(made.mask_weights.sum(axis=0), 1)
+    found = layers.read(actor.transfer())
+    np.testing.assert_allclose(found.weights, actor.weights, atol=1e-3)
 
 
 @pytest.mark.parametrize(

@@ -24,7 +24,7 @@ def composed(made, found):
 
 
 @pytest.mark.parametrize("points", ["both", "markers"])
-@pytest.mark.parametrize("balance", ["variance", "published"])
+@pytest.mark.parametrize("balance", ["mask_variance", "variance", "published"])
 def test_planted_layers_come_back(actor, points, balance):
     actor.assemble(points=points, balance=balance)
     found = layers.read(actor.transfer())
