@@ -70,7 +70,7 @@ def balanced(raw: np.ndarray, kinds: np.ndarray, masks: np.ndarray) -> Face:
     kinds : (D,) int array, 0 markers, 1 video points
     masks : (R, D) float array
     """
-    unit = 1.0 / coordinate_balance.factors(raw, kinds, "variance")
+    unit = 1.0 / coordinate_balance.factors(raw, kinds, masks, "mask_variance")
     return Face(raw / unit[:, None], layers(), masks, unit)
 
 

@@ -76,6 +76,8 @@ def _extremes(names, track, shapes) -> np.ndarray:
     raw = np.zeros((shapes.shape[1], emotions + speech + blinks))
     raw[:, 1:emotions] = played[_spread(played, emotions - 1)].T
     raw[:, emotions + 1 : emotions + speech] = said[_spread(said, speech - 1)].T
+    pressed = [name.startswith(("mouthPress", "mouthRoll")) for name in names]
+    raw[:, layer_faces.CLOSED] = 0.3 * np.array(pressed) @ shapes
     raw[:, -2] = 0.5 * blink @ shapes
     raw[:, -1] = blink @ shapes
     return raw

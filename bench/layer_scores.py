@@ -35,7 +35,8 @@ def single_residuals(model, frames) -> np.ndarray:
     centre = layer_starts.draws(model, 0, 0)[0]
     coefficients = centre[-len(model.layer) :]
     for frame in frames:
-        objective = layer_objective.at(model, layer_model.project(model, frame), 0.0, 0.0, None)
+        quadratic = layer_model.project(model, frame)
+        objective = layer_objective.at(model, quadratic, quadratic, 0.0, 0.0, None)
         points, _ = layer_starts.singles(model, objective, coefficients, coefficients, 1e-12)
         terms.append([layer_objective.value(model, objective, point) for point in points])
     return np.array(terms)
@@ -84,7 +85,7 @@ def against_slsqp(model, settings, performance, frames, tolerance) -> dict[str, 
             continue
         before = np.concatenate([last.weights.ravel(), last.coefficients])
         quadratic = layer_model.project(model, frame)
-        objective = layer_objective.at(model, quadratic, near, settings.temporal, before)
+        objective = layer_objective.at(model, quadratic, quadratic, near, settings.temporal, before)
         start = time.process_time()
         value, _ = layer_search.descend(model, objective, before)
         columns["descent s"].append(time.process_time() - start)

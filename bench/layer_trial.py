@@ -125,7 +125,7 @@ def _gaps(model, frames, plain) -> None:
     better = []
     for index in chosen:
         quadratic = layer_model.project(model, frames[index])
-        objective = layer_objective.at(model, quadratic, 0.0, 0.0, None)
+        objective = layer_objective.at(model, quadratic, quadratic, 0.0, 0.0, None)
         best = layer_scores.brute_force(model, objective, DRAWS, int(index))
         better.append(plain.objective[index] - best)
     better = np.array(better)

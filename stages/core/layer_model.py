@@ -20,6 +20,8 @@ class Model(NamedTuple):
     masks : (R, D) float array, one at every coordinate in sum
     lips : (N,) int array, entries of the solver's point that closed lips pull; none without bias
     closed_lips : (N,) float array, where they pull them
+    lip_share : (D,) float array, the lips' mask; zero without bias
+    lip_gram : (R * K, R * K) float array, as `gram`, each coordinate by its `lip_share`
     pairs : (N, 2) int array, masks that overlap, each with itself too
     gram : (R * K, R * K) float array, ``(M_l B)'(M_m B)``
     scale : float, mean of the Gram matrix's diagonal where it is not zero
@@ -34,6 +36,8 @@ class Model(NamedTuple):
     masks: np.ndarray
     lips: np.ndarray
     closed_lips: np.ndarray
+    lip_share: np.ndarray
+    lip_gram: np.ndarray
     pairs: np.ndarray
     gram: np.ndarray
     scale: float
@@ -89,14 +93,14 @@ def _check(basis, layer, masks, lip_mask, speech_layer, closed):
         )
 
 
-def _gram(basis, masks, pairs):
-    """Return ``(M_l B)'(M_m B)`` over coordinates, zero where masks do not overlap."""
+def _gram(basis, masks, pairs, share=1.0):
+    """Return ``(M_l B)' share (M_m B)`` over coordinates, zero where masks do not overlap."""
     count = basis.shape[1]
     gram = np.zeros((len(masks) * count, len(masks) * count))
     for a, b in pairs:
-        both = np.flatnonzero(masks[a] * masks[b])
-        part = basis[both]
-        block = (part * (masks[a, both] * masks[b, both])[:, None]).T @ part
+        product = masks[a] * masks[b] * share
+        both = np.flatnonzero(product)
+        block = (basis[both] * product[both, None]).T @ basis[both]
         gram[a * count : (a + 1) * count, b * count : (b + 1) * count] = 0.5 * (block + block.T)
     return gram
 
@@ -143,6 +147,7 @@ def build(
     diagonal = np.diag(gram)
     if not diagonal.any():
         raise ValueError(f"basis {basis.shape}: no extreme differs from the neutral")
+    lip_share = masks[lip_mask] if lip_mask >= 0 else np.zeros(len(basis))
     scale = float(diagonal[diagonal > 0.0].mean())
     mask_group = np.repeat(np.arange(regions), count)
     return Model(
@@ -150,6 +155,8 @@ def build(
         layer,
         masks,
         *_lip_bias(layer, regions, lip_mask, speech_layer, closed),
+        lip_share,
+        _gram(basis, masks, pairs, lip_share),
         pairs,
         gram,
         scale,
@@ -194,6 +201,24 @@ def project(model: Model, frame: np.ndarray) -> Quadratic | None:
         spanned = np.linalg.solve(gram + RIDGE * model.scale * np.eye(len(gram)), linear)
     span = data(Quadratic(energy, linear, gram, 0.0), spanned)
     return Quadratic(energy, linear, gram, max(span, 0.0))
+
+
+def under_lips(model: Model, frame: np.ndarray) -> Quadratic:
+    """Return the part of a frame's data term that lies under the lips' mask, its span left out.
+
+    Parameters
+    ----------
+    model : see `Model`
+    frame : (D,) float array, as `project` takes it
+    """
+    missing = np.isnan(frame)
+    known = np.where(missing, 0.0, frame) * model.lip_share
+    gram = model.lip_gram
+    if missing.any():
+        share = model.lip_share[missing]
+        gram = gram - _gram(model.basis[missing], model.masks[:, missing], model.pairs, share)
+    energy = float(known @ np.where(missing, 0.0, frame))
+    return Quadratic(energy, ((model.masks * known) @ model.basis).ravel(), gram, 0.0)
 
 
 def data(quadratic: Quadratic, displacements: np.ndarray) -> float:

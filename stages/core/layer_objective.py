@@ -13,7 +13,7 @@ class Objective(NamedTuple):
 
     Attributes
     ----------
-    quadratic : the data term, ``1 - g`` included
+    quadratic : the data term, less what gives way to closed lips
     pull, target : (R * J + K,) float array
     fixed : float
     """
@@ -27,6 +27,7 @@ class Objective(NamedTuple):
 def at(
     model: layer_model.Model,
     quadratic: layer_model.Quadratic,
+    yielding: layer_model.Quadratic,
     closeness: float,
     temporal: float,
     before: np.ndarray | None,
@@ -38,22 +39,26 @@ def at(
     Parameters
     ----------
     model, quadratic : see `layer_model`
+    yielding : the part of the data term that gives way to closed lips: all of it, or the mouth's
     closeness : float in 0..1, of the lips
     temporal : float, at least 0
     before : (R * J + K,) float array, the last frame's point; None on the first frame
     """
     held = 0.0 if before is None else temporal
     target = np.zeros(len(model.group)) if before is None else before.copy()
-    pull, fixed = np.full(len(model.group), held), 0.0
+    pull, fixed = np.full(len(model.group), float(held)), 0.0
     if closeness > 0.0:
         old, aim = target[model.lips], model.closed_lips
         pull[model.lips] += closeness
         mean = (held * old + closeness * aim) / (held + closeness)
         fixed = float(np.sum(held * (old - mean) ** 2 + closeness * (aim - mean) ** 2))
         target[model.lips] = mean
-        energy, linear, gram, span = quadratic
-        data = 1.0 - closeness
-        quadratic = layer_model.Quadratic(data * energy, data * linear, data * gram, span)
+        quadratic = layer_model.Quadratic(
+            quadratic.energy - closeness * yielding.energy,
+            quadratic.linear - closeness * yielding.linear,
+            quadratic.gram - closeness * yielding.gram,
+            quadratic.span,
+        )
     return Objective(quadratic, pull, target, fixed)
 
 

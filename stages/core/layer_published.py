@@ -100,7 +100,7 @@ def solve(
         if quadratic is None:
             solutions.append(layer_solver.nothing(model))
             continue
-        objective = layer_objective.at(model, quadratic, float(near), settings.temporal, before)
+        objective = layer_solver.stated(model, settings, frame, quadratic, float(near), before)
         point = sequential(model, objective, interior(model, objective, point))
         before = point
         value = layer_objective.value(model, objective, point)

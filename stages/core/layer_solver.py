@@ -14,13 +14,24 @@ import numpy as np
 from stages.core import layer_amplitude, layer_model, layer_objective, layer_search
 
 SOFTNESS = 1e-3
+LIPS_YIELD = ("face", "mouth")
 
 
 class Settings(NamedTuple):
-    """Hold the temporal weight at the frames' own rate and how far amplitudes may exceed one."""
+    """Hold how layers are solved.
+
+    Attributes
+    ----------
+    temporal : weight of the last frame, at the frames' own rate
+    beyond : how far amplitudes may exceed one
+    lips_yield : the part of the data term that ``1 - g`` stands before: `face`, all of it, as
+        published; `mouth`, what lies under the lips' mask, so that closed lips do not hold the
+        rest of the face still
+    """
 
     temporal: float = 0.05
     beyond: float = 0.0
+    lips_yield: str = "face"
 
 
 class State(NamedTuple):
@@ -117,11 +128,28 @@ def check(model: layer_model.Model, settings: Settings, frames, closeness) -> No
         raise ValueError(f"expected at least one frame, got {np.shape(frames)}")
     if not (0.0 <= settings.temporal < np.inf and 0.0 <= settings.beyond < np.inf):
         raise ValueError(f"temporal and beyond must be at least 0 and finite, got {settings}")
+    if settings.lips_yield not in LIPS_YIELD:
+        raise ValueError(f"lips_yield must be one of {LIPS_YIELD}, got {settings.lips_yield}")
     near = np.asarray(closeness)
     if not ((near >= 0.0) & (near <= 1.0)).all():
         raise ValueError(f"closeness must be in 0..1, got {near.min()} to {near.max()}")
     if not len(model.lips) and near.any():
         raise ValueError(f"closeness of {near.max()} needs a lip mask, which the model has not")
+
+
+def stated(
+    model: layer_model.Model,
+    settings: Settings,
+    frame: np.ndarray,
+    quadratic: layer_model.Quadratic,
+    closeness: float,
+    before: np.ndarray | None,
+) -> layer_objective.Objective:
+    """Return a frame's objective, given its data term and the last frame's point, if any."""
+    yielding = quadratic
+    if closeness > 0.0 and settings.lips_yield == "mouth":
+        yielding = layer_model.under_lips(model, frame)
+    return layer_objective.at(model, quadratic, yielding, closeness, settings.temporal, before)
 
 
 def describe(
@@ -192,11 +220,11 @@ def solve_frame(
     quadratic = layer_model.project(model, frame)
     if quadratic is None:
         return nothing(model), previous
-    before, guide, held = None, None, 0.0
+    before = guide = None
     if previous is not None:
         before = np.concatenate([previous.weights.ravel(), previous.coefficients])
-        guide, held = previous.guide, settings.temporal
-    objective = layer_objective.at(model, quadratic, closeness, held, before)
+        guide = previous.guide
+    objective = stated(model, settings, frame, quadratic, closeness, before)
     found = layer_search.best(model, objective, before, guide)
     amplitudes = _amplitudes(model, settings, objective.quadratic, found.point, previous)
     solution = describe(model, quadratic, found.point, amplitudes, found.value, found.bound)

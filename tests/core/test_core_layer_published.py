@@ -19,7 +19,8 @@ def test_gradient_is_that_of_the_objective():
     model = built(rng)
     frame = rng.normal(size=SIZE) / np.sqrt(SIZE)
     before, point = rng.uniform(size=(2, len(model.group)))
-    objective = layer_objective.at(model, layer_model.project(model, frame), 0.3, 0.2, before)
+    quadratic = layer_model.project(model, frame)
+    objective = layer_objective.at(model, quadratic, quadratic, 0.3, 0.2, before)
     numeric = scipy.optimize.approx_fprime(
         point, lambda at: layer_objective.value(model, objective, at), 1e-7
     )
@@ -37,7 +38,7 @@ def test_both_solvers_meet_from_the_same_start():
         start = rng.exponential(size=len(model.group))
         start /= np.bincount(model.group, start)[model.group]
         quadratic = layer_model.project(model, frame)
-        objective = layer_objective.at(model, quadratic, 0.2, 0.05, start)
+        objective = layer_objective.at(model, quadratic, quadratic, 0.2, 0.05, start)
         value, _ = layer_search.descend(model, objective, start)
         end = layer_published.sequential(model, objective, start)
         worse += value > layer_objective.value(model, objective, end) + 1e-6

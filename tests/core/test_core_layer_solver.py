@@ -41,7 +41,8 @@ def cost(model, settings, frame, closeness, previous, weights, coefficients):
     """The objective, written out as in the method."""
     known = ~np.isnan(frame)
     shape = composed(model, weights[None], coefficients[None])[0]
-    data = np.sum((frame - shape)[known] ** 2)
+    yields = model.masks[MOUTH] if settings.lips_yield == "mouth" else 1.0
+    data = np.sum(((1 - closeness * yields) * (frame - shape) ** 2)[known])
     spoken = model.layer == SPEECH
     closed = np.arange(len(model.layer)) == CLOSED
     lips = np.sum((weights[MOUTH] - [0, 1, 0]) ** 2)
@@ -50,7 +51,7 @@ def cost(model, settings, frame, closeness, previous, weights, coefficients):
     if previous is not None:
         change = np.sum((weights - previous.weights) ** 2)
         change += np.sum((coefficients - previous.coefficients) ** 2)
-    return (1 - closeness) * data + closeness * lips + settings.temporal * change
+    return data + closeness * lips + settings.temporal * change
 
 
 @pytest.mark.parametrize("soft", [False, True])
@@ -71,13 +72,16 @@ def test_finds_planted_layers(soft):
     closeness=st.sampled_from([0.0, 0.3, 1.0]),
     temporal=st.sampled_from([0.0, 0.05, 1.0]),
     soft=st.booleans(),
+    lips_yield=st.sampled_from(layer_solver.LIPS_YIELD),
+    missing=st.sampled_from([0, 9]),
 )
 @hypothesis.settings(max_examples=25, deadline=None)
-def test_is_feasible_and_certified(seed, closeness, temporal, soft):
+def test_is_feasible_and_certified(seed, closeness, temporal, soft, lips_yield, missing):
     rng = np.random.default_rng(seed)
     model = built(rng, soft_masks(rng) if soft else None)
-    settings = layer_solver.Settings(temporal)
+    settings = layer_solver.Settings(temporal, lips_yield=lips_yield)
     frames = composed(model, *drawn(rng, 3)) + 0.3 * rng.normal(size=(3, SIZE)) / np.sqrt(SIZE)
+    frames[1, rng.permutation(SIZE)[:missing]] = np.nan
     state = None
     for frame in frames:
         previous = state
@@ -104,7 +108,8 @@ def test_is_as_good_as_many_starts():
     found = layer_solver.solve(model, layer_solver.Settings(0.0), frames, np.zeros(12))
     worse = 0
     for frame, value, bound in zip(frames, found.objective, found.bound, strict=True):
-        objective = layer_objective.at(model, layer_model.project(model, frame), 0.0, 0.0, None)
+        quadratic = layer_model.project(model, frame)
+        objective = layer_objective.at(model, quadratic, quadratic, 0.0, 0.0, None)
         ends = [
             layer_published.sequential(model, objective, start)
             for start in layer_starts.draws(model, 15, 3)
@@ -203,12 +208,28 @@ def test_closed_lips_bring_the_mouth_to_its_viseme():
     rng = np.random.default_rng(7)
     model = built(rng)
     frame = composed(model, *drawn(rng, 1))[0]
-    found, _ = layer_solver.solve_frame(model, layer_solver.Settings(0.0), frame, 1.0)
+    found, _ = layer_solver.solve_frame(model, layer_solver.Settings(0), frame, 1)
     np.testing.assert_allclose(found.weights[MOUTH], [0, 1, 0], atol=1e-7)
     assert found.coefficients[CLOSED] == pytest.approx(1, abs=1e-7)
     slack, _ = layer_solver.solve_frame(model, layer_solver.Settings(0.0), frame, 0.5)
     free, _ = layer_solver.solve_frame(model, layer_solver.Settings(0.0), frame, 0.0)
     assert free.weights[MOUTH, 1] < slack.weights[MOUTH, 1] < 1
+
+
+def test_closed_lips_need_not_hold_the_rest_of_the_face():
+    rng = np.random.default_rng(7)
+    model = built(rng)
+    weights, coefficients = drawn(rng, 2)
+    weights[:, MOUTH] = [0, 1, 0]
+    coefficients[:, LAYER == SPEECH] = np.arange(len(LAYER))[LAYER == SPEECH] == CLOSED
+    frames = composed(model, weights, coefficients)
+    errors = []
+    for lips_yield in layer_solver.LIPS_YIELD:
+        settings = layer_solver.Settings(0.05, lips_yield=lips_yield)
+        found = layer_solver.solve(model, settings, frames, np.array([0.0, 1.0]))
+        shape = composed(model, found.weights, found.coefficients)
+        errors.append(np.linalg.norm(shape[1] - frames[1]))
+    assert errors[1] < 0.5 * errors[0]
 
 
 def test_temporal_weight_slows_what_changes():
@@ -264,6 +285,7 @@ def test_temporal_weight_forgets_alike_at_all_rates(rate):
         (np.zeros((1, SIZE)), np.full(1, 1.5), (0.0, 0.0), "closeness"),
         (np.zeros((1, SIZE)), np.full(1, np.nan), (0.0, 0.0), "closeness"),
         (np.zeros((1, SIZE)), np.ones(1), (0.0, 0.0), "lip mask"),
+        (np.zeros((1, SIZE)), np.zeros(1), (0.0, 0.0, "eyes"), "lips_yield"),
         (np.zeros((1, SIZE)), np.zeros(1), (-1.0, 0.0), "temporal"),
         (np.zeros((1, SIZE)), np.zeros(1), (0.0, np.inf), "beyond"),
     ],
