@@ -40,6 +40,13 @@ def build_parser() -> argparse.ArgumentParser:
         ),
     ):
         parser.add_argument(f"--{name}", required=True, type=float, help=text)
+    parser.add_argument(
+        "--lips-yield",
+        default="face",
+        choices=layer_solver.LIPS_YIELD,
+        help="what closed lips keep from following the points: the whole face, as published, or"
+        " the mouth alone",
+    )
     parser.add_argument("--layers", required=True, help="layers to write, .parquet")
     return parser
 
@@ -72,9 +79,8 @@ def run(options: argparse.Namespace, solver: str, solve: Solve) -> None:
     model = layer_model.build(
         made.basis * made.scale[:, None], made.layer, made.mask_weights, *lips
     )
-    settings = layer_solver.Settings(
-        layer_solver.temporal_at(float(points.rate), options.temporal), options.beyond
-    )
+    temporal = layer_solver.temporal_at(float(points.rate), options.temporal)
+    settings = layer_solver.Settings(temporal, options.beyond, options.lips_yield)
     solution = solve(model, settings, offsets * made.scale, closeness)
     measures = {
         "residual": _residual(made, solution, offsets),

@@ -83,6 +83,14 @@ def test_closing_lips_draw_the_mouth_to_m(actor):
     shown = closed == 1
     assert found.weights[shown, 1, speech].min() > 0.95
     assert found.coefficients[shown, found.extremes.index(("speech", "m"))].min() > 0.95
+    mouth = layers.read(actor.transfer(lip_sigma=0.02, lips_yield="mouth"))
+    assert mouth.weights[shown, 1, speech].min() > 0.95
+    elsewhere = actor.mask != 1
+    errors_of = [
+        np.linalg.norm((composed(made, each) - actor.offsets["play"])[shown][:, elsewhere])
+        for each in (mouth, found)
+    ]
+    assert errors_of[0] < 0.6 * errors_of[1]
     free = layers.read(actor.transfer(lip_sigma=0))
     np.testing.assert_array_equal(free.measures["lip_bias"], 0)
     assert free.weights[shown, 1, speech].min() < 0.9
