@@ -30,6 +30,11 @@ def composed(basis: np.ndarray, masks: np.ndarray, u: np.ndarray) -> np.ndarray:
     basis : (D, K) float array, extremes less the neutral
     masks : (R, D) float array
     u : (T, R, K) float array, as `displacements` gives
+
+    Raises
+    ------
+    ValueError
+        if the shapes do not fit together
     """
     if basis.shape[1:] != u.shape[2:] or masks.shape != (u.shape[1], len(basis)):
         raise ValueError(f"basis {basis.shape}, masks {masks.shape} and u {u.shape} do not fit")
