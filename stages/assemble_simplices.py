@@ -9,7 +9,6 @@ speech m counts as closed.
 
 import argparse
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 
@@ -22,6 +21,7 @@ from stages.files import (
     extremes,
     layer_points,
     lip_gap,
+    picked_frames,
     poses,
     rig,
     simplices,
@@ -29,18 +29,10 @@ from stages.files import (
 
 SHOWN = 3  # faults that an error names
 MOST_LEFT_OUT = 0.5  # of the points
+SAME = 0.05  # of the mean distance in a layer, between extremes that are one
 STILL = 1e-6  # what rounding may move [face units]
 CLOSED = "_".join(extremes.CLOSED_LIPS)
 Row = tuple[str, str, str, str]
-
-
-class _Actor(NamedTuple):
-    """Hold the points of the shots that a person picked frames of."""
-
-    layout: layer_points.Layout
-    offsets: dict[str, np.ndarray]
-    frames: dict[str, dict[int, int]]
-    known: set[str]
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -76,10 +68,10 @@ def main(argv: Sequence[str]) -> None:
     known = extremes.read(options.extremes)
     table = options.expression_table
     picked = expressions.read(table, options.actor, options.shots, known)
-    actor = _actor(options, picked)
+    actor = picked_frames.read(options.expressions, options.shots, options.points, picked)
     expressions.check_frames(table, picked, actor.frames)
     shared, report = _shared(options, known, picked)
-    basis = np.stack([_at(actor, row) for row in shared], axis=1)
+    basis = np.stack([picked_frames.offset_of(actor, row) for row in shared], axis=1)
     layout, basis, missing = _observed(options, actor.layout, shared, basis)
     layout, basis, masks, unused = _masked(options, actor, layout, basis)
     _check_masks(options, masks.names)
@@ -112,31 +104,6 @@ def main(argv: Sequence[str]) -> None:
             cli.logger.info(
                 "%s: %s", " ".join(cell for cell in row[:2] if cell), ", ".join(row[2:])
             )
-
-
-def _actor(options: argparse.Namespace, picked: Sequence[expressions.Picked]) -> _Actor:
-    """Read the points of the shots that are named, and the names of all."""
-    if len(options.expressions) != len(options.shots):
-        message = f"{len(options.shots)} names for {len(options.expressions)} expressions"
-        raise errors.InputError("--shots", f"{message}: give one for each")
-    paths = dict(zip(options.shots, options.expressions, strict=True))
-    named = [shot for shot in options.shots if any(row.shot == shot for row in picked)]
-    read = {shot: layer_points.read(paths[shot], options.points) for shot in named}
-    layout = layer_points.joined(points.layout for points in read.values())
-    return _Actor(
-        layout,
-        {shot: layer_points.flat(points, layout) for shot, points in read.items()},
-        {
-            shot: {int(frame): row for row, frame in enumerate(points.frame)}
-            for shot, points in read.items()
-        },
-        {name for path in paths.values() for name in layer_points.known_names(path)},
-    )
-
-
-def _at(actor: _Actor, row: expressions.Picked) -> np.ndarray:
-    """Return the offsets (D,) on the frame of an extreme."""
-    return actor.offsets[row.shot][actor.frames[row.shot][row.frame]]
 
 
 def _shared(
@@ -198,7 +165,10 @@ def _observed(
 
 
 def _masked(
-    options: argparse.Namespace, actor: _Actor, layout: layer_points.Layout, basis: np.ndarray
+    options: argparse.Namespace,
+    actor: picked_frames.PickedFrames,
+    layout: layer_points.Layout,
+    basis: np.ndarray,
 ) -> tuple[layer_points.Layout, np.ndarray, actor_masks.ActorMasks, list[Row]]:
     """Read the masks of the points, and leave out the points that the table gives no weight."""
     names = layer_points.point_names(layout)
@@ -242,25 +212,27 @@ def _check_apart(
     scale: np.ndarray,
     layer: np.ndarray,
 ) -> None:
-    """Refuse extremes of one layer that nearly coincide."""
-    pairs = near_extremes.find(basis * scale[:, None], layer)
-    if not pairs:
-        return
-    named = []
-    for pair in pairs[:SHOWN]:
+    """Refuse extremes of one layer that nearly coincide, and warn of those that are near."""
+    same = []
+    cure = "pick frames that differ more, or remove one of the two"
+    for pair in near_extremes.find(basis * scale[:, None], layer):
         first, second = shared[pair.first], shared[pair.second]
         apart = np.sqrt(np.mean((basis[:, pair.first] - basis[:, pair.second]) ** 2))
         lines = f"lines {first.line} and {second.line}: {first.layer} {first.name}"
         share = f"{pair.share:.1%} of the mean distance in the layer"
-        named.append(f"{lines} and {second.name} are {apart:.2g} face units apart, {share}")
-    more = f", and {len(pairs) - SHOWN} more pairs" if len(pairs) > SHOWN else ""
-    cure = "pick frames that differ more, or remove one of the two"
-    raise errors.InputError(table, f"{'; '.join(named)}{more}: {cure}")
+        named = f"{lines} and {second.name} are {apart:.2g} face units apart, {share}"
+        if pair.share < SAME:
+            same.append(named)
+        else:
+            cli.logger.warning("%s: %s, it may not tell them apart; %s", table, named, cure)
+    if same:
+        more = f", and {len(same) - SHOWN} more pairs" if len(same) > SHOWN else ""
+        raise errors.InputError(table, f"{'; '.join(same[:SHOWN])}{more}: {cure}")
 
 
 def _lips(
     options: argparse.Namespace,
-    actor: _Actor,
+    actor: picked_frames.PickedFrames,
     picked: Sequence[expressions.Picked],
     shared: Sequence[expressions.Picked],
     masks: Sequence[str],

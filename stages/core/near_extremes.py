@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-NEAR = 0.05
+# neighbouring frames of a pose that is held still are as far apart by noise alone
+NEAR = 0.15
 
 
 class NearPair(NamedTuple):

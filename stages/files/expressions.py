@@ -72,7 +72,9 @@ def check_layers(path: str | Path, rows: Sequence[Picked]) -> None:
         own = [row for row in rows if row.layer == layer]
         if len(own) == 1:
             message = f"line {own[0].line}: {own[0].name} is the one extreme of layer {layer}"
-            cure = f"pick a second, such as {extremes.AT_REST[layer]}, or remove the row"
+            rest = extremes.AT_REST[layer]
+            second = "a second" if own[0].name == rest else f"a second, such as {rest},"
+            cure = f"pick {second} or remove the row"
             raise errors.InputError(path, f"{message}: {cure}")
 
 

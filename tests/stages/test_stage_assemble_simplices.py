@@ -142,7 +142,7 @@ def test_one_frame_may_show_extremes_of_two_layers(actor):
     np.testing.assert_array_equal(made.basis[:, 0], made.basis[:, 5])
 
 
-def test_extremes_that_nearly_coincide_are_named(actor):
+def test_extremes_that_nearly_coincide_are_named(actor, caplog):
     near = actor.basis[:, 1] + 0.01 * actor.basis[:, 2]
     actor.offsets["faces"][FIRST + 3] = near
     actor.write()
@@ -155,6 +155,7 @@ def test_extremes_that_nearly_coincide_are_named(actor):
     actor.offsets["faces"][FIRST + 3] = actor.basis[:, 1] + 0.1 * actor.basis[:, 2]
     actor.write()
     actor.assemble()
+    assert "emotion joy and rage are 0.0" in caplog.text and "may not tell them" in caplog.text
 
 
 @pytest.mark.parametrize(
