@@ -225,3 +225,12 @@ def data(quadratic: Quadratic, displacements: np.ndarray) -> float:
     """Return the data term of displacements u (R * K,)."""
     curved = quadratic.gram @ displacements - 2.0 * quadratic.linear
     return float(quadratic.energy + displacements @ curved)
+
+
+def outside(model: Model, quadratic: Quadratic, point: np.ndarray) -> float:
+    """Return how far the frame lies outside the simplices, given the solver's point (R * J + K,).
+
+    The root of its squared distance from what the point composes to, less that from the span.
+    """
+    u = point[model.first] * point[model.second]
+    return float(np.sqrt(max(data(quadratic, u) - quadratic.span, 0.0)))

@@ -104,5 +104,7 @@ def solve(
         point = sequential(model, objective, interior(model, objective, point))
         before = point
         value = layer_objective.value(model, objective, point)
-        solutions.append(layer_solver.describe(model, quadratic, point, ones, value, -np.inf))
+        outside = layer_model.outside(model, quadratic, point)
+        described = (model, quadratic, point, ones, value, -np.inf, outside)
+        solutions.append(layer_solver.describe(*described))
     return layer_solver.stacked(solutions)

@@ -59,10 +59,11 @@ class Solution(NamedTuple):
     weights : (R, J) float array
     coefficients : (K,) float array
     amplitudes : (J,) float array
-    objective : float, of weights and coefficients, at amplitude one
-    bound : float, no weights and coefficients whatever have a lower objective
+    objective : float, of the best weights and coefficients that were found at amplitude one
+    bound : float, no weights and coefficients whatever have a lower one
     data : float, ``|x - sum_l M_l sum_j w_lj s_j B_j a_j|^2``, amplitudes included
-    outside : float, root of the data term at amplitude one less that of any linear combination
+    outside : float, root of what the data term, at amplitude one, has above that of the best
+        linear combination under each mask
     """
 
     weights: np.ndarray
@@ -91,30 +92,22 @@ def temporal_at(rate: float, lambda_at_30: float) -> float:
     return float(kept / (1.0 - kept))
 
 
-def _amplitudes(
+def _amplified(
     model: layer_model.Model,
     settings: Settings,
-    quadratic: layer_model.Quadratic,
+    objective: layer_objective.Objective,
     point: np.ndarray,
     previous: State | None,
-) -> np.ndarray:
-    """Return the amplitude of each layer, one where the bounds are hard."""
-    layers = model.sizes[1]
-    ones = np.ones(layers)
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the solver's point and the amplitude of each layer, one where bounds are hard."""
+    ones = np.ones(model.sizes[1])
     if settings.beyond == 0.0:
-        return ones
-    of_layer = np.tile(model.layer, len(model.masks)) == np.arange(layers)[:, None]
-    parts = np.where(of_layer, point[model.first] * point[model.second], 0.0)
+        return point, ones
     slack = SOFTNESS * model.scale
     held = 0.0 if previous is None else settings.temporal
     before = ones if previous is None else previous.amplitudes
-    return layer_amplitude.solve(
-        parts @ quadratic.gram @ parts.T,
-        parts @ quadratic.linear,
-        slack + held,
-        (slack + held * before) / (slack + held),
-        settings.beyond,
-    )
+    centre = (slack + held * before) / (slack + held)
+    return layer_amplitude.follow(model, objective, point, slack + held, centre, settings.beyond)
 
 
 def check(model: layer_model.Model, settings: Settings, frames, closeness) -> None:
@@ -159,13 +152,12 @@ def describe(
     amplitudes: np.ndarray,
     objective: float,
     bound: float,
+    outside: float,
 ) -> Solution:
     """Return a frame's solution, given the solver's point."""
     regions, layers, _ = model.sizes
-    hard = point[model.first] * point[model.second]
-    inside = data = layer_model.data(quadratic, hard)
-    if (amplitudes != 1.0).any():
-        data = layer_model.data(quadratic, hard * np.tile(amplitudes[model.layer], regions))
+    size = np.tile(amplitudes[model.layer], regions)
+    data = layer_model.data(quadratic, point[model.first] * point[model.second] * size)
     return Solution(
         point[: regions * layers].reshape(regions, layers),
         point[regions * layers :],
@@ -173,7 +165,7 @@ def describe(
         objective,
         min(bound, objective),
         max(data, 0.0),
-        np.sqrt(max(inside - quadratic.span, 0.0)),
+        outside,
     )
 
 
@@ -226,8 +218,9 @@ def solve_frame(
         guide = previous.guide
     objective = stated(model, settings, frame, quadratic, closeness, before)
     found = layer_search.best(model, objective, before, guide)
-    amplitudes = _amplitudes(model, settings, objective.quadratic, found.point, previous)
-    solution = describe(model, quadratic, found.point, amplitudes, found.value, found.bound)
+    outside = layer_model.outside(model, quadratic, found.point)
+    point, amplitudes = _amplified(model, settings, objective, found.point, previous)
+    solution = describe(model, quadratic, point, amplitudes, found.value, found.bound, outside)
     state = State(solution.weights, solution.coefficients, amplitudes, found.guide)
     return solution, state
 

@@ -250,10 +250,10 @@ def test_amplitudes_follow_what_is_too_large():
     hard = layer_solver.solve(model, layer_solver.Settings(0.0), frames, np.zeros(10))
     soft = layer_solver.solve(model, layer_solver.Settings(0.0, 0.5), frames, np.zeros(10))
     np.testing.assert_array_equal(hard.amplitudes, 1.0)
-    np.testing.assert_array_equal(hard.weights, soft.weights)
     assert np.all(soft.amplitudes >= 1) and np.all(soft.amplitudes <= 1.5)
-    assert soft.data.mean() < 0.6 * hard.data.mean()
-    np.testing.assert_array_equal(soft.outside, hard.outside)
+    assert soft.data.mean() < 0.2 * hard.data.mean()
+    assert np.all(hard.outside > 0)
+    np.testing.assert_allclose(soft.outside, hard.outside, atol=1e-3)
 
 
 def test_outside_is_the_distance_from_the_simplices():
