@@ -51,6 +51,11 @@ def layer_expressions(wildcards):
     return expand("results/shots/{shot}/expression.parquet", shot=layer_shots(wildcards))
 
 
+def layer_tables(wildcards):
+    """Return the tables of extremes and masks that exist: extremes are proposed before any is."""
+    return present(["config/expressions.tsv", "config/actor_masks.tsv"])
+
+
 def rows_as_text(name, **wanted):
     """Return some rows of a table as texts: only they change what depends on them."""
     rows = [

@@ -55,12 +55,11 @@ rule assemble_poses:
 
 rule assemble_simplices:
     input:
+        ancient(layer_tables),
         expressions=layer_expressions,
         poses="results/cast/{actor}/{character}/poses.parquet",
         rig="results/cast/{actor}/{character}/rig.npz",
         extremes=data_table("extremes.tsv"),
-        expression_table=ancient("config/expressions.tsv"),
-        mask_table=ancient("config/actor_masks.tsv"),
     output:
         simplices="results/cast/{actor}/{character}/simplices.npz",
         report="results/cast/{actor}/{character}/simplices.tsv",
@@ -86,8 +85,8 @@ rule assemble_simplices:
     shell:
         "python -m stages.assemble_simplices"
         " --actor {wildcards.actor:q}"
-        " --expression-table {input.expression_table:q}"
-        " --mask-table {input.mask_table:q}"
+        " --expression-table config/expressions.tsv"
+        " --mask-table config/actor_masks.tsv"
         " --shots {params.shots:q}"
         " --expressions {input.expressions:q}"
         " --points {params.points:q}"
@@ -123,6 +122,7 @@ rule transfer_layers:
         lip_points=session_cell("lip_points"),
         lip_mask=character_cell("lip_mask"),
         lip_sigma=character_cell("lip_sigma"),
+        lips_yield=character_cell("lips_yield"),
         temporal=character_cell("temporal"),
         beyond=character_cell("beyond"),
     shell:
@@ -132,6 +132,7 @@ rule transfer_layers:
         " --lip-points={params.lip_points:q}"
         " --lip-mask {params.lip_mask:q}"
         " --lip-sigma {params.lip_sigma}"
+        " --lips-yield {params.lips_yield:q}"
         " --temporal {params.temporal}"
         " --beyond {params.beyond}"
         " --layers {output.layers:q}"
@@ -158,6 +159,7 @@ rule transfer_layers_published:
         lip_points=session_cell("lip_points"),
         lip_mask=character_cell("lip_mask"),
         lip_sigma=character_cell("lip_sigma"),
+        lips_yield=character_cell("lips_yield"),
         temporal=character_cell("temporal"),
         beyond=character_cell("beyond"),
         seed=config["seed"],
@@ -168,6 +170,7 @@ rule transfer_layers_published:
         " --lip-points={params.lip_points:q}"
         " --lip-mask {params.lip_mask:q}"
         " --lip-sigma {params.lip_sigma}"
+        " --lips-yield {params.lips_yield:q}"
         " --temporal {params.temporal}"
         " --beyond {params.beyond}"
         " --seed {params.seed}"
