@@ -41,8 +41,13 @@ def build_parser() -> argparse.ArgumentParser:
     parser.add_argument("--actor", required=True, help="name of the actor")
     parser.add_argument("--expression-table", required=True, help="the frames picked, .tsv")
     parser.add_argument("--mask-table", required=True, help="masks of the actor's points, .tsv")
-    parser.add_argument("--shots", required=True, nargs="+", help="names of the basis shots")
-    parser.add_argument("--expressions", required=True, nargs="+", help="their expressions")
+    parser.add_argument(
+        "--shots",
+        required=True,
+        nargs="*",
+        help="names of the basis shots, none before any is picked",
+    )
+    parser.add_argument("--expressions", required=True, nargs="*", help="their expressions")
     parser.add_argument("--points", required=True, choices=list(layer_points.KINDS))
     parser.add_argument("--poses", required=True, help="extremes of the character, .parquet")
     parser.add_argument("--rig", required=True, help="rig.npz of the character, for its masks")

@@ -106,6 +106,7 @@ def _picked(
         message = f"line {row.line}, column name: {layer} has no extreme '{name}'"
         raise errors.InputError(path, f"{message}, the nearest is {near}: correct it")
     if shot not in shots:
-        message = f"line {row.line}, column shot: '{shot}' is none of {', '.join(shots)}"
-        raise errors.InputError(path, f"{message}, the actor's basis shots: see shots.tsv")
+        known_shots = ", ".join(shots) or "there are none"
+        message = f"line {row.line}, column shot: '{shot}' is none of the basis shots that drive"
+        raise errors.InputError(path, f"{message} ({known_shots}): see shots.tsv and cast.tsv")
     return Picked(row.line, layer, name, shot, delimited.whole_number(path, row, "frame"))
