@@ -184,11 +184,10 @@ def _gaps_filled(
     if options.gap_filling == "linear":
         return _filled(path, values), observed
     seen = solutions.observed(solved, path, asked.names)
-    try:
-        made = inbetween.fill(learnt.motion, seen, float(solved.rate), asked.low, asked.high)
-    except ValueError as error:
-        message = f"{error}: see the shot's confidence, or set gap_filling to linear"
-        raise errors.InputError(path, message) from error
+    for name, known in zip(asked.names, np.isfinite(seen).any(axis=0), strict=True):
+        if not known:
+            raise errors.InputError(path, f"{name} is nowhere tracked: see the shot's confidence")
+    made = inbetween.fill(learnt.motion, seen, float(solved.rate), asked.low, asked.high)
     if solved.meta["kind"] == PARTS:
         made = np.where(np.isfinite(seen), seen, whole_parts.limited(made, seen, masks))
     return np.column_stack([made, np.nan_to_num(values[:, -1])]), observed

@@ -15,7 +15,8 @@ foretell says how far the missing ones do (`channel_relations`); at the ends tha
 no curve jumps.
 """
 
-from collections.abc import Sequence
+import itertools
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -30,8 +31,13 @@ RIDGE = 0.05
 # hidden stretches for each duration: more are more of the same; fewer teach nothing
 MOST, FEWEST = 1000, 20
 MOST_ROWS = 4000
+# numbers that are worked on at once
+MOST_CELLS = 1 << 21
 SAMPLES = 5
 BLOCKS = 6
+
+# take, first frame and length of stretches
+Windows = list[tuple[int, int, int]]
 
 
 class Inbetween(NamedTuple):
@@ -126,7 +132,9 @@ def fill(
             made[before + 1 : after, lost] = values[after if before < 0 else before, lost]
             continue
         seen = np.isfinite(values[before : after + 1]).all(axis=0)
-        found = between(model, values, before, after, rate)
+        known = np.isfinite(values[[before, after]]).all(axis=0)
+        found = np.full((after - before - 1, values.shape[1]), np.nan)
+        found[:, known] = between(model, values[:, known], before, after, rate)
         inner = found[:, lost]
         if seen.any() and len(model.deviations):
             key = lost.tobytes() + seen.tobytes()
@@ -149,16 +157,29 @@ def fill(
 def between(
     model: Inbetween, values: np.ndarray, before: int, after: int, rate: float
 ) -> np.ndarray:
-    """Return what the ends of a gap foretell, (after - before - 1, K); NaN where an end is."""
+    """Return what the ends of a gap foretell of the frames in it.
+
+    Parameters
+    ----------
+    model : what was learnt
+    values : (T, ..., K) float array, finite in the rows `before` and `after`
+    before, after : the edges of the gap
+    rate : frames per second
+
+    Returns
+    -------
+    (after - before - 1, ..., K) float array
+    """
     place = np.arange(1, after - before) / (after - before)
-    known = np.isfinite(values[[before, after]]).all(axis=0)
-    made = np.full((len(place), values.shape[1]), np.nan)
-    some = values[:, known]
-    ends = gap_features.features(some, before, after, rate, model.durations[-1])
-    bent = ends @ _at(model, (after - before) / rate)
-    straight = np.outer(1.0 - place, some[before]) + np.outer(place, some[after])
-    made[:, known] = straight + _basis(place) @ bent.T
-    return made
+    ends = gap_features.features(values, before, after, rate, model.durations[-1])
+    bent = np.moveaxis(ends @ _at(model, (after - before) / rate), -1, 0)
+    straight = _straight(values[before], values[after], place)
+    return straight + np.tensordot(_basis(place), bent, 1)
+
+
+def _straight(start: np.ndarray, end: np.ndarray, place: np.ndarray) -> np.ndarray:
+    """Return the straight line between two poses at places (L,) in 0..1, (L, ...)."""
+    return np.multiply.outer(1.0 - place, start) + np.multiply.outer(place, end)
 
 
 def _at(model: Inbetween, duration: float) -> np.ndarray:
@@ -177,40 +198,54 @@ def _basis(place: np.ndarray) -> np.ndarray:
     return (place * (1.0 - place))[:, None] * (2.0 * place - 1.0)[:, None] ** np.arange(TERMS)
 
 
-def _windows(
-    takes: Sequence[np.ndarray], rates: Sequence[float], duration: float
-) -> list[tuple[int, int, int]]:
-    """Return take, first and last frame of stretches to hide, with all channels known in some."""
+def _windows(takes: Sequence[np.ndarray], rates: Sequence[float], duration: float) -> Windows:
+    """Return stretches to hide, whose frames and those around them are known."""
     found = []
     for number, (take, rate) in enumerate(zip(takes, rates, strict=True)):
         span = max(2, round(duration * rate))
-        reach = int(np.ceil(gap_features.LAGS * gap_features.STEP_S * rate))
-        whole = np.isfinite(take).all(axis=1)
-        spoilt = np.concatenate([[0], np.cumsum(~whole)])
+        reach = _reach(rate)
+        spoilt = np.concatenate([[0], np.cumsum(~np.isfinite(take).all(axis=1))])
         first = np.arange(reach, len(take) - span - reach)
-        clean = spoilt[first + span + reach + 1] == spoilt[first - reach]
-        found += [(number, int(start), int(start) + span) for start in first[clean]]
+        clean = first[spoilt[first + span + reach + 1] == spoilt[first - reach]]
+        found += [(number, int(start), span) for start in clean]
     chosen = np.unique(np.linspace(0, len(found) - 1, min(MOST, len(found))).astype(int))
     return [found[index] for index in chosen]
 
 
+def _reach(rate: float) -> int:
+    """Return how many frames beyond a gap's edges its features need."""
+    return int(np.ceil(gap_features.LAGS * gap_features.STEP_S * rate))
+
+
+def _blocks(
+    takes: Sequence[np.ndarray], rates: Sequence[float], windows: Windows
+) -> Iterator[tuple[Windows, np.ndarray, int, int, float]]:
+    """Yield windows of one take, their frames (T, N, K), rows of the edges, and the rate."""
+    for (number, span), same in itertools.groupby(windows, key=lambda one: (one[0], one[2])):
+        take, rate, group = takes[number], rates[number], list(same)
+        reach = _reach(rate)
+        rows = np.arange(-reach, span + reach + 1)
+        size = max(1, MOST_CELLS // (len(rows) * take.shape[1]))
+        for first in range(0, len(group), size):
+            some = group[first : first + size]
+            starts = np.array([start for _, start, _ in some])
+            yield some, take[rows[:, None] + starts], reach, reach + span, rate
+
+
 def _coefficients(
-    takes: Sequence[np.ndarray], rates: Sequence[float], windows: list[tuple[int, int, int]]
+    takes: Sequence[np.ndarray], rates: Sequence[float], windows: Windows
 ) -> np.ndarray:
     """Return the coefficients (F, TERMS) of the ridge regression over hidden stretches."""
     squares = np.zeros((gap_features.COUNT, gap_features.COUNT))
     products = np.zeros((gap_features.COUNT, TERMS))
-    inverse: dict[int, np.ndarray] = {}
-    for number, before, after in windows:
-        take, span = takes[number], after - before
-        place = np.arange(1, span) / span
-        if span not in inverse:
-            inverse[span] = np.linalg.pinv(_basis(place))
-        straight = np.outer(1.0 - place, take[before]) + np.outer(place, take[after])
-        bent = inverse[span] @ (take[before + 1 : after] - straight)
-        ends = gap_features.features(take, before, after, rates[number])
+    for _, frames, before, after, rate in _blocks(takes, rates, windows):
+        place = np.arange(1, after - before) / (after - before)
+        bent = frames[before + 1 : after] - _straight(frames[before], frames[after], place)
+        terms = np.tensordot(np.linalg.pinv(_basis(place)), bent, 1).reshape(TERMS, -1)
+        ends = gap_features.features(frames, before, after, rate)
+        ends = ends.reshape(-1, gap_features.COUNT)
         squares += ends.T @ ends
-        products += ends.T @ bent.T
+        products += ends.T @ terms.T
     own = np.diag(squares)
     # features that never appear have nothing to say
     kept = squares + RIDGE * np.diag(np.where(own > 0.0, own, 1.0))
@@ -226,11 +261,13 @@ def _deviations(
     for duration in RELATED_S:
         windows = _windows(takes, rates, duration)
         step = max(1, -(-len(windows) * SAMPLES * len(RELATED_S) // MOST_ROWS))
-        for number, before, after in windows[::step]:
-            inner = np.linspace(before, after, SAMPLES + 2)[1:-1].round().astype(int)
-            found = between(model, takes[number], before, after, rates[number])
-            rows.append(takes[number][inner] - found[inner - before - 1])
-            times.append(np.full(SAMPLES, (starts[number] + before) / starts[-1]))
+        for some, frames, before, after, rate in _blocks(takes, rates, windows[::step]):
+            inner = np.unique(np.linspace(before, after, SAMPLES + 2)[1:-1].round().astype(int))
+            found = between(model, frames, before, after, rate)
+            off = frames[inner] - found[inner - before - 1]
+            rows.append(off.reshape(-1, off.shape[-1]))
+            own = [(starts[number] + start) / starts[-1] for number, start, _ in some]
+            times.append(np.tile(own, len(inner)))
     return np.concatenate(rows), (np.concatenate(times) * BLOCKS).astype(int)
 
 
