@@ -17,7 +17,8 @@ ROUNDS = 200
 @numba.njit(cache=True)
 def _references(point, group, reference):
     """Find the largest entry of each simplex: the one that gives what the others take."""
-    reference[:] = -1
+    for i in range(len(reference)):
+        reference[i] = -1
     for i in range(len(point)):
         best = reference[group[i]]
         if best < 0 or point[i] > point[best]:
@@ -25,8 +26,8 @@ def _references(point, group, reference):
 
 
 @numba.njit(cache=True)
-def _factorise(matrix, size):
-    """Replace the lower triangle by its Cholesky factor; say if it was positive definite."""
+def _solve_definite(matrix, size, vector):
+    """Solve by Cholesky's factors, in place; say if the matrix was positive definite."""
     for j in range(size):
         for k in range(j):
             factor = matrix[j, k]
@@ -38,22 +39,15 @@ def _factorise(matrix, size):
         root = np.sqrt(matrix[j, j])
         for i in range(j, size):
             matrix[i, j] /= root
-    return True
-
-
-@numba.njit(cache=True)
-def _substitute(matrix, size, vector):
-    """Solve with a Cholesky factor, in place."""
     for i in range(size):
-        total = vector[i]
         for k in range(i):
-            total -= matrix[i, k] * vector[k]
-        vector[i] = total / matrix[i, i]
+            vector[i] -= matrix[i, k] * vector[k]
+        vector[i] /= matrix[i, i]
     for i in range(size - 1, -1, -1):
-        total = vector[i]
         for k in range(i + 1, size):
-            total -= matrix[k, i] * vector[k]
-        vector[i] = total / matrix[i, i]
+            vector[i] -= matrix[k, i] * vector[k]
+        vector[i] /= matrix[i, i]
+    return True
 
 
 @numba.njit(cache=True)
@@ -68,19 +62,15 @@ def _newton_step(hessian, gradient, group, reference, free, ridge, step):
             size += 1
     reduced, vector = np.empty((size, size)), np.empty(size)
     for p in range(size):
-        i = members[p]
-        base = reference[group[i]]
+        i, base = members[p], reference[group[members[p]]]
         vector[p] = gradient[base] - gradient[i]
         for q in range(p + 1):
-            j = members[q]
-            other = reference[group[j]]
-            reduced[p, q] = (
-                hessian[i, j] - hessian[i, other] - hessian[base, j] + hessian[base, other]
-            )
+            j, other = members[q], reference[group[members[q]]]
+            reduced[p, q] = hessian[i, j] - hessian[i, other]
+            reduced[p, q] += hessian[base, other] - hessian[base, j]
         reduced[p, p] += ridge
-    if not _factorise(reduced, size):
+    if not _solve_definite(reduced, size, vector):
         return False
-    _substitute(reduced, size, vector)
     for p in range(size):
         step[members[p]] = vector[p]
         step[reference[group[members[p]]]] -= vector[p]
@@ -92,7 +82,7 @@ def _advance(hessian, gradient, point, free, step):
     """Go along a step until an entry is zero, which is then no longer free; return the length."""
     length, blocker = 1.0, -1
     for i in range(len(point)):
-        if step[i] < 0.0 and point[i] + length * step[i] < 0.0:
+        if point[i] + length * step[i] < 0.0:
             length, blocker = -point[i] / step[i], i
     for i in range(len(point)):
         if step[i] != 0.0:
@@ -108,20 +98,19 @@ def _advance(hessian, gradient, point, free, step):
 
 @numba.njit(cache=True)
 def _release(gradient, group, reference, free, tolerance, single):
-    """Free the entry of each simplex (or of all) that promises most; return how many."""
-    best = np.full(len(reference), -1)
-    gain = np.full(len(reference), tolerance)
+    """Free the entry of each simplex, or of all, that promises most; say if there was any."""
+    best, gain = np.empty(len(reference), np.int64), np.empty(len(reference))
+    for j in range(len(reference)):
+        best[j], gain[j] = -1, tolerance
     for i in range(len(free)):
-        j = group[i]
-        promise = gradient[reference[j]] - gradient[i]
+        promise = gradient[reference[group[i]]] - gradient[i]
+        j = 0 if single else group[i]
         if not free[i] and promise > gain[j]:
             gain[j], best[j] = promise, i
-    count, top = 0, np.argmax(gain)
     for j in range(len(reference)):
-        if best[j] >= 0 and (j == top or not single):
+        if best[j] >= 0:
             free[best[j]] = True
-            count += 1
-    return count
+    return best.max() >= 0
 
 
 @numba.njit(cache=True)
@@ -130,10 +119,12 @@ def minimise_quadratic(hessian, gradient, group, point, tolerance, ridge):
 
     Primal active set from the zeros of the point; say if the quadratic was convex on the way.
     """
-    free = point > 0.0
-    step = np.empty(len(point))
-    reference = np.empty(group.max() + 1, np.int64)
-    single = False
+    free, step = np.empty(len(point), np.bool_), np.empty(len(point))
+    simplices, single = 0, False
+    for i in range(len(point)):
+        free[i] = point[i] > 0.0
+        simplices = max(simplices, group[i] + 1)
+    reference = np.empty(simplices, np.int64)
     for _ in range(ROUNDS):
         _references(point, group, reference)
         if not _newton_step(hessian, gradient, group, reference, free, ridge, step):
@@ -143,7 +134,7 @@ def minimise_quadratic(hessian, gradient, group, point, tolerance, ridge):
         if blocker >= 0:
             continue
         _references(point, group, reference)
-        if _release(gradient, group, reference, free, tolerance, single) == 0:
+        if not _release(gradient, group, reference, free, tolerance, single):
             return True
     return True
 
@@ -162,15 +153,14 @@ def _times(gram, pairs, vector, count):
 
 
 @numba.njit(cache=True)
-def _gauss_newton(gram, pairs, first, point, count, hessian):
-    """Fill in twice ``J' gram J``, where J is the derivative of u by the point."""
-    hessian[:] = 0.0
+def _gauss_newton(gram, pairs, first, point, count):
+    """Return twice ``J' gram J``, where J is the derivative of u by the point."""
     weights = len(point) - count
     layers = weights * count // len(first)
-    values, wide, rows = point[weights:], np.empty(count), np.empty((weights, count))
+    hessian, values, wide = np.zeros((len(point), len(point))), point[weights:], np.empty(count)
     for p in range(len(pairs)):
         start, other = pairs[p, 0] * count, pairs[p, 1] * count
-        rows[:] = 0.0
+        rows = np.zeros((weights, count))
         for j in range(count):
             wide[j] = 2.0 * point[first[other + j]]
         for k in range(count):
@@ -191,54 +181,79 @@ def _gauss_newton(gram, pairs, first, point, count, hessian):
     for weight in range(weights):
         for j in range(weights, len(point)):
             hessian[j, weight] = hessian[weight, j]
+    return hessian
 
 
 @numba.njit(cache=True)
-def _gradient(slope, pull, target, first, second, point):
-    """Return the gradient by the point, given that by the displacements."""
-    gradient = 2.0 * pull * (point - target)
+def _second_order(hessian, pull, slope, first, second):
+    """Add the pulls to a Gauss-Newton matrix, and return the Hessian with all its terms."""
+    for i in range(len(pull)):
+        hessian[i, i] += 2.0 * pull[i]
+    full = hessian.copy()
     for i in range(len(first)):
+        full[first[i], second[i]] += slope[i]
+        full[second[i], first[i]] += slope[i]
+    return full
+
+
+@numba.njit(cache=True)
+def _slopes(gram, pairs, linear, pull, target, first, second, point, slope, gradient):
+    """Fill in the gradients by displacements and by the point; return f less the energy."""
+    moved = np.empty(len(first))
+    for i in range(len(first)):
+        moved[i] = point[first[i]] * point[second[i]]
+    product = _times(gram, pairs, moved, len(point) - second[0])
+    value = 0.0
+    for i in range(len(point)):
+        away = point[i] - target[i]
+        gradient[i] = 2.0 * pull[i] * away
+        value += pull[i] * away * away
+    for i in range(len(first)):
+        value += (product[i] - 2.0 * linear[i]) * moved[i]
+        slope[i] = 2.0 * (product[i] - linear[i])
         gradient[first[i]] += slope[i] * point[second[i]]
         gradient[second[i]] += slope[i] * point[first[i]]
-    return gradient
-
-
-@numba.njit(cache=True)
-def _cubic_root(c, low, high):
-    """Return the root of an ascending ``c1 + 2 c2 t + 3 c3 t^2 + 4 c4 t^3`` by bisection."""
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        if c[1] + middle * (2.0 * c[2] + middle * (3.0 * c[3] + middle * 4.0 * c[4])) < 0.0:
-            low = middle
-        else:
-            high = middle
-    return 0.5 * (low + high)
+    return value
 
 
 @numba.njit(cache=True)
 def _lowest(c):
-    """Return where in 0..1 the quartic with coefficients c (5,) is lowest."""
-    ends = np.array([0.0, 1.0, 1.0, 1.0])
+    """Return where in 0..1 the quartic with coefficients c (5,) is lowest.
+
+    Its slope is monotone between the roots of its curvature; there, bisection finds where it rises.
+    """
+    near, far = 1.0, 1.0
     root = 9.0 * c[3] * c[3] - 24.0 * c[4] * c[2]
     if root > 0.0:
-        half = -3.0 * c[3] - np.copysign(np.sqrt(root), c[3])
+        half = -3.0 * c[3] - (np.sqrt(root) if c[3] >= 0.0 else -np.sqrt(root))
         near = half / (12.0 * c[4]) if c[4] != 0.0 else 1.0
         far = 2.0 * c[2] / half if half != 0.0 else 1.0
-        ends[1], ends[2] = max(0.0, min(near, far, 1.0)), max(0.0, min(max(near, far), 1.0))
+    near, far = max(0.0, min(near, 1.0)), max(0.0, min(far, 1.0))
     best, value = 1.0, c[1] + c[2] + c[3] + c[4]
+    ends = (0.0, min(near, far), max(near, far), 1.0)
     for s in range(3):
-        root = _cubic_root(c, ends[s], ends[s + 1])
-        height = root * (c[1] + root * (c[2] + root * (c[3] + root * c[4])))
+        low, high = ends[s], ends[s + 1]
+        for _ in range(60):
+            t = 0.5 * (low + high)
+            if c[1] + t * (2.0 * c[2] + t * (3.0 * c[3] + t * 4.0 * c[4])) < 0.0:
+                low = t
+            else:
+                high = t
+        height = high * (c[1] + high * (c[2] + high * (c[3] + high * c[4])))
         if height < value:
-            best, value = root, height
+            best, value = high, height
     return best
 
 
 @numba.njit(cache=True)
-def _quartic(gram, pairs, slope, pull, target, first, second, point, step, count):
+def _quartic(gram, pairs, slope, pull, target, first, second, point, step):
     """Return the coefficients of the objective along a step."""
-    once = point[first] * step[second] + step[first] * point[second]
-    twice = step[first] * step[second]
+    once, twice = np.empty(len(first)), np.empty(len(first))
+    for i in range(len(first)):
+        by_weight, by_coefficient = step[first[i]], step[second[i]]
+        once[i] = point[first[i]] * by_coefficient + by_weight * point[second[i]]
+        twice[i] = by_weight * by_coefficient
+    count = len(point) - second[0]
     product, square = _times(gram, pairs, once, count), _times(gram, pairs, twice, count)
     c = np.zeros(5)
     for i in range(len(once)):
@@ -259,29 +274,24 @@ def descend(gram, pairs, linear, pull, target, first, second, group, point, tole
     Each round minimises the second-order model over the simplices (Gauss-Newton where the full one
     is not convex) and goes to the lowest place on the way there.
     """
-    count = len(point) - second[0]
-    hessian, full = np.empty((len(point), len(point))), np.empty((len(point), len(point)))
+    size, count = len(point), len(point) - second[0]
+    slope, gradient, step = np.empty(len(first)), np.empty(size), np.empty(size)
     for _ in range(ROUNDS):
-        shape = point[first] * point[second]
-        product = _times(gram, pairs, shape, count)
-        value = np.sum((product - 2.0 * linear) * shape) + np.sum(pull * (point - target) ** 2)
-        slope = 2.0 * (product - linear)
-        gradient = _gradient(slope, pull, target, first, second, point)
-        _gauss_newton(gram, pairs, first, point, count, hessian)
-        for i in range(len(point)):
-            hessian[i, i] += 2.0 * pull[i]
-        full[:] = hessian
-        for i in range(len(first)):
-            full[first[i], second[i]] += slope[i]
-            full[second[i], first[i]] += slope[i]
+        value = _slopes(gram, pairs, linear, pull, target, first, second, point, slope, gradient)
+        hessian = _gauss_newton(gram, pairs, first, point, count)
+        full = _second_order(hessian, pull, slope, first, second)
         trial = point.copy()
         if not minimise_quadratic(full, gradient.copy(), group, trial, tolerance, ridge):
             trial = point.copy()
             minimise_quadratic(hessian, gradient.copy(), group, trial, tolerance, ridge)
-        step = trial - point
-        if np.sum(gradient * step) > -tolerance:
+        promise = 0.0
+        for i in range(size):
+            step[i] = trial[i] - point[i]
+            promise -= gradient[i] * step[i]
+        if promise < tolerance:
             break
-        c = _quartic(gram, pairs, slope, pull, target, first, second, point, step, count)
+        c = _quartic(gram, pairs, slope, pull, target, first, second, point, step)
         length = _lowest(c)
-        point[:] = trial if length == 1.0 else point + length * step
+        for i in range(size):
+            point[i] = trial[i] if length == 1.0 else point[i] + length * step[i]
     return value

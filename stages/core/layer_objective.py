@@ -75,13 +75,13 @@ def value(model: layer_model.Model, objective: Objective, point: np.ndarray) -> 
 def _varying(gram, linear, pull, target, first, second, point):
     """Return the objective less what does not depend on the point."""
     total = 0.0
-    moved = point[first] * point[second]
-    used = np.flatnonzero(moved)
-    for i in used:
-        curved = -2.0 * linear[i]
-        for j in used:
-            curved += gram[i, j] * moved[j]
-        total += curved * moved[i]
+    for i in range(len(first)):
+        moved = point[first[i]] * point[second[i]]
+        if moved != 0.0:
+            curved = -2.0 * linear[i]
+            for j in range(len(first)):
+                curved += gram[i, j] * point[first[j]] * point[second[j]]
+            total += curved * moved
     for i in range(len(point)):
         total += pull[i] * (point[i] - target[i]) ** 2
     return total

@@ -13,45 +13,48 @@ from stages.core import layer_kernel, layer_model, layer_objective
 
 
 @numba.njit(cache=True)
-def _assemble(gram, linear, layer, pull, target, share, weights):
+def _assemble(gram, linear, layer, pull, target, share):
     """Return Hessian and linear term of the relaxed objective."""
-    hessian, slope = 2.0 * gram, -2.0 * linear
-    count = len(layer)
-    layers = layer.max() + 1
-    ahead = pull[weights:] * target[weights:]
-    square = np.zeros(layers)
+    count, weights = len(layer), len(share)
+    layers = weights * count // len(linear)
+    hessian, slope = np.empty((len(linear), len(linear))), np.empty(len(linear))
+    ahead, square = np.empty(count), np.zeros(layers)
     for k in range(count):
+        ahead[k] = pull[weights + k] * target[weights + k]
         square[layer[k]] += ahead[k] * target[weights + k]
-    for start in range(0, len(linear), count):
-        for k in range(count):
-            j = layer[k]
-            entry = (start // count) * layers + j
-            portion = 2.0 * share[entry]
-            slope[start + k] -= 2.0 * pull[entry] * target[entry]
-            hessian[start + k, start + k] += portion * pull[weights + k]
-            for other in range(count):
-                if layer[other] == j:
-                    curve = square[j] - ahead[k] - ahead[other]
-                    hessian[start + k, start + other] += 2.0 * pull[entry] + portion * curve
+    for row in range(len(linear)):
+        for column in range(len(linear)):
+            hessian[row, column] = 2.0 * gram[row, column]
+        mask, k = row // count, row % count
+        entry = mask * layers + layer[k]
+        portion = 2.0 * share[entry]
+        slope[row] = -2.0 * (linear[row] + pull[entry] * target[entry])
+        hessian[row, row] += portion * pull[weights + k]
+        for other in range(count):
+            if layer[other] == layer[k]:
+                curve = square[layer[k]] - ahead[k] - ahead[other]
+                hessian[row, mask * count + other] += 2.0 * pull[entry] + portion * curve
     return hessian, slope
 
 
 @numba.njit(cache=True)
 def _bound(hessian, slope, group, point):
     """Return the Frank-Wolfe lower bound of a convex quadratic over simplices."""
+    least = np.empty(len(point))
+    for i in range(len(point)):
+        least[group[i]] = np.inf
     curved = np.zeros(len(point))
     for i in range(len(point)):
         if point[i] != 0.0:
             for j in range(len(point)):
                 curved[j] += hessian[i, j] * point[i]
-    least = np.full(group.max() + 1, np.inf)
-    value, along = 0.0, 0.0
+    bound = 0.0
     for i in range(len(point)):
-        gradient = curved[i] + slope[i]
-        value += (0.5 * curved[i] + slope[i]) * point[i]
-        along += gradient * point[i]
-        least[group[i]] = min(least[group[i]], gradient)
-    return value + least.sum() - along
+        bound -= 0.5 * curved[i] * point[i]
+        least[group[i]] = min(least[group[i]], curved[i] + slope[i])
+    for j in range(group[len(point) - 1] + 1):
+        bound += least[j]
+    return bound
 
 
 def solve(
@@ -74,9 +77,7 @@ def solve(
     """
     quadratic, pull, target, fixed = objective
     weights = len(share)
-    hessian, slope = _assemble(
-        quadratic.gram, quadratic.linear, model.layer, pull, target, share, weights
-    )
+    hessian, slope = _assemble(quadratic.gram, quadratic.linear, model.layer, pull, target, share)
     point = start.copy()
     layer_kernel.minimise_quadratic(
         hessian,

@@ -61,10 +61,11 @@ def _separate(gram, pairs, linear, layer, pull, target, point):
             row, block = hessian[k], gram[start + k, other : other + count]
             for j in range(count):
                 row[j] += 2.0 * block[j]
-    gradient = -2.0 * pull * target
+    gradient = np.zeros(count)
     for i in range(len(linear)):
         gradient[i % count] -= 2.0 * linear[i]
     for k in range(count):
+        gradient[k] -= 2.0 * pull[k] * target[k]
         hessian[k, k] += 2.0 * pull[k]
         for j in range(count):
             if layer[j] != layer[k]:
