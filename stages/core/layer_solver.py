@@ -14,7 +14,8 @@ import numpy as np
 from stages.core import layer_amplitude, layer_model, layer_objective, layer_search
 
 SOFTNESS = 1e-3
-LIPS_YIELD = ("face", "mouth")
+GAP_WEIGHT = 100.0
+LIP_BIASES = ("gap", "mouth", "published")
 
 
 class Settings(NamedTuple):
@@ -24,14 +25,15 @@ class Settings(NamedTuple):
     ----------
     temporal : weight of the last frame, at the frames' own rate
     beyond : how far amplitudes may exceed one
-    lips_yield : the part of the data term that ``1 - g`` stands before: `face`, all of it, as
-        published; `mouth`, what lies under the lips' mask, so that closed lips do not hold the
-        rest of the face still
+    lip_bias : what closeness g of the lips does. `published`: as above. `mouth`: ``1 - g`` stands
+        only before what lies under the lips' mask, so that closed lips do not hold the rest of the
+        face still. `gap`: nothing gives way and nothing is pulled to /m/; the gap of the lips is
+        one more row of data, of weight g `GAP_WEIGHT`, see `layer_model.with_gap`
     """
 
     temporal: float = 0.05
     beyond: float = 0.0
-    lips_yield: str = "face"
+    lip_bias: str = "gap"
 
 
 class State(NamedTuple):
@@ -110,22 +112,25 @@ def _amplified(
     return layer_amplitude.follow(model, objective, point, slack + held, centre, settings.beyond)
 
 
-def check(model: layer_model.Model, settings: Settings, frames, closeness) -> None:
+def check(model: layer_model.Model, settings: Settings, frames, closeness, apart) -> None:
     """Refuse sequences that do not fit the model and numbers that mean nothing."""
-    if np.shape(frames)[1:] != model.basis.shape[:1] or np.shape(closeness) != (len(frames),):
+    shapes = np.shape(frames), np.shape(closeness), np.shape(apart)
+    if shapes[0][1:] != model.basis.shape[:1] or not shapes[1] == shapes[2] == (len(frames),):
         raise ValueError(
-            f"expected frames (T, {len(model.basis)}) and closeness (T,), got {np.shape(frames)}"
-            f" and {np.shape(closeness)}"
+            f"expected frames (T, {len(model.basis)}), closeness and apart (T,), got {shapes}"
         )
     if not len(frames):
         raise ValueError(f"expected at least one frame, got {np.shape(frames)}")
     if not (0.0 <= settings.temporal < np.inf and 0.0 <= settings.beyond < np.inf):
         raise ValueError(f"temporal and beyond must be at least 0 and finite, got {settings}")
-    if settings.lips_yield not in LIPS_YIELD:
-        raise ValueError(f"lips_yield must be one of {LIPS_YIELD}, got {settings.lips_yield}")
+    if settings.lip_bias not in LIP_BIASES:
+        raise ValueError(f"lip_bias must be one of {LIP_BIASES}, got {settings.lip_bias}")
     near = np.asarray(closeness)
     if not ((near >= 0.0) & (near <= 1.0)).all():
         raise ValueError(f"closeness must be in 0..1, got {near.min()} to {near.max()}")
+    wide = np.asarray(apart)[near > 0.0]
+    if not ((wide >= 0.0) & (wide < np.inf)).all():
+        raise ValueError(f"apart must be at least 0 and finite, got {wide.min()} to {wide.max()}")
     if not len(model.lips) and near.any():
         raise ValueError(f"closeness of {near.max()} needs a lip mask, which the model has not")
 
@@ -136,11 +141,15 @@ def stated(
     frame: np.ndarray,
     quadratic: layer_model.Quadratic,
     closeness: float,
+    apart: float,
     before: np.ndarray | None,
 ) -> layer_objective.Objective:
     """Return a frame's objective, given its data term and the last frame's point, if any."""
     yielding = quadratic
-    if closeness > 0.0 and settings.lips_yield == "mouth":
+    if closeness > 0.0 and settings.lip_bias == "gap":
+        quadratic = layer_model.with_gap(model, quadratic, apart, closeness * GAP_WEIGHT)
+        closeness = 0.0
+    elif closeness > 0.0 and settings.lip_bias == "mouth":
         yielding = layer_model.under_lips(model, frame)
     return layer_objective.at(model, quadratic, yielding, closeness, settings.temporal, before)
 
@@ -187,6 +196,7 @@ def solve_frame(
     frame: np.ndarray,
     closeness: float = 0.0,
     previous: State | None = None,
+    apart: float = 0.0,
 ) -> tuple[Solution, State | None]:
     """Solve one frame from the last; this is all that a live performance needs.
 
@@ -197,6 +207,7 @@ def solve_frame(
     frame : (D,) float array, less the neutral [balanced]; NaN = not observed
     closeness : float in 0..1, of the lips
     previous : State of the last frame; None = try several starts, nothing is held
+    apart : how far the lips stand further apart than closed ones; for the bias by their gap
 
     Returns
     -------
@@ -208,7 +219,7 @@ def solve_frame(
     ValueError
         if arrays do not fit the model or a number is out of range
     """
-    check(model, settings, np.asarray(frame)[None], np.array([closeness]))
+    check(model, settings, np.asarray(frame)[None], np.array([closeness]), np.array([apart]))
     quadratic = layer_model.project(model, frame)
     if quadratic is None:
         return nothing(model), previous
@@ -216,7 +227,7 @@ def solve_frame(
     if previous is not None:
         before = np.concatenate([previous.weights.ravel(), previous.coefficients])
         guide = previous.guide
-    objective = stated(model, settings, frame, quadratic, closeness, before)
+    objective = stated(model, settings, frame, quadratic, closeness, apart, before)
     found = layer_search.best(model, objective, before, guide)
     outside = layer_model.outside(model, quadratic, found.point)
     point, amplitudes = _amplified(model, settings, objective, found.point, previous)
@@ -230,6 +241,7 @@ def solve(
     settings: Settings,
     frames: np.ndarray,
     closeness: np.ndarray,
+    apart: np.ndarray | None = None,
 ) -> Solution:
     """Solve a sequence, each frame from the last: `solve_frame` over and over.
 
@@ -238,6 +250,7 @@ def solve(
     model, settings : see `solve_frame`
     frames : (T, D) float array, less the neutral [balanced]; NaN = not observed
     closeness : (T,) float array in 0..1, of the lips
+    apart : (T,) float array, how far the lips stand further apart than closed ones; None = not
 
     Returns
     -------
@@ -248,9 +261,10 @@ def solve(
     ValueError
         if arrays do not fit the model or each other, or a number is out of range
     """
-    check(model, settings, frames, closeness)
+    apart = np.zeros(len(frames)) if apart is None else apart
+    check(model, settings, frames, closeness, apart)
     solutions, state = [], None
-    for frame, near in zip(frames, closeness, strict=True):
-        solution, state = solve_frame(model, settings, frame, float(near), state)
+    for frame, near, wide in zip(frames, closeness, apart, strict=True):
+        solution, state = solve_frame(model, settings, frame, float(near), state, float(wide))
         solutions.append(solution)
     return stacked(solutions)
