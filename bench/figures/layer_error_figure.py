@@ -88,7 +88,8 @@ def _caption(main, small):
         "layer alone, the nearest point of its simplex by the same data term. Published order of "
         f"the means: {' < '.join(PUBLISHED)}; here {_order(errors)} by the markers and "
         f"{_order(main.of_kind['video'])} by the film's points. By the markers the layered "
-        f"error is the lowest on {lowest:.0f} % of the frames. Means of {', '.join(PUBLISHED)} in mm by mask: {masks}. "
+        f"error is the lowest on {lowest:.0f} % of the frames. Means of "
+        f"{', '.join(PUBLISHED)} in mm by mask: {masks}. "
         "Lower row: the same where the data term sees the markers alone, on the shot that the "
         f"extremes were picked from, and on one of markers without film: {others}."
     )
