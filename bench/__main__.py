@@ -2,8 +2,8 @@
 
 A folder with `labels.csv` and `reference/` tries the tracker; one with films and `.align` files
 sound sync and phones; one with `ict-facekit/`, `facecap-head/` and `livelink/` key shapes, weights,
-markers, head motion, regressions, filters, dynamics and layers; a folder of such folders tries all. Without data it
-takes about ten minutes, most of them for `reruns` and `large_rig`; with data about an hour.
+markers, head motion, regressions, filters, dynamics and layers; a folder of such folders tries all.
+Without data it takes about a quarter of an hour, with data more than one hour.
 """
 
 import argparse
