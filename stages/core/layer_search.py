@@ -78,9 +78,9 @@ def best(
 ) -> Found:
     """Return the best that was found from the last frame's point and from others.
 
-    The others are tried where the bound leaves room: the relaxation, each layer alone if that is
-    better already, and on the first frame draws. The last frame's own descendant is kept unless
-    another is better by more than rounding, so that nothing flickers between equals.
+    The others are tried where the bound leaves room: the relaxation, the best layer alone, and on
+    the first frame draws. So no layer alone is ever better. The last frame's own descendant is
+    kept unless another is better by more than rounding, so that nothing flickers between equals.
 
     Parameters
     ----------
@@ -102,9 +102,8 @@ def best(
         held = point[regions * layers :]
         starts.append(layer_relaxation.factors(model, relaxed, held))
         points, alone = layer_starts.singles(model, objective, held, alone, enough)
-        for single in points:
-            if before is None or layer_objective.value(model, objective, single) < value - enough:
-                starts.append(single)
+        values = [layer_objective.value(model, objective, single) for single in points]
+        starts.append(points[int(np.argmin(values))])
         for start in starts[1:]:
             other, place = descend(model, objective, start)
             if other < value - enough:
