@@ -179,7 +179,7 @@ def pick(show, actor):
     edit(show.folder / "config/expressions.tsv", f"{row}{frame}", f"{row}{frame - 1}")
 
 
-PLAIN = {"direct_layers": 1, **SHOWN}
+DIRECTED = {"direct_layers": 1, **SHOWN}
 # dynamics are learnt from what a character does in the basis shot
 PICKED = {
     "assemble_simplices": 2,
@@ -197,16 +197,16 @@ PICKED = {
     [
         (
             lambda show: (edit_pose(show), pick(show, "lea")),
-            PLAIN | {"assemble_poses": 1, "assemble_simplices": 1, "transfer_layers": 1},
+            DIRECTED | {"assemble_poses": 1, "assemble_simplices": 1, "transfer_layers": 1},
         ),
-        (lambda show: direct(show, "plain", "b"), PLAIN),
+        # the take `a` of this character is not mentioned, nor is the other character
         (
-            lambda show: direct(show, "painted", ""),
-            PLAIN | DELIVERED | {"direct_layers": 2, "learn_dynamics": 1, "shape_motion": 1},
+            lambda show: direct(show, "painted", "b"),
+            DIRECTED | DELIVERED | {"shape_motion": 1},
         ),
         (lambda show: pick(show, "eve"), PICKED),
     ],
-    ids=["pose and another actor", "directed take", "directed character", "picked"],
+    ids=["pose and another actor", "directed take", "picked"],
 )
 def test_a_change_makes_only_what_depends_on_it_again(show, change, made):
     change(show)
