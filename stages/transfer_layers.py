@@ -38,6 +38,7 @@ def build_parser() -> argparse.ArgumentParser:
             "beyond",
             "how far layers may go beyond their extremes, 0.2 up to 1.2 times; 0 not at all",
         ),
+        ("lean", "how strongly a mask is left to the layers that move what is under it; 0 not"),
     ):
         parser.add_argument(f"--{name}", required=True, type=float, help=text)
     parser.add_argument(
@@ -65,7 +66,7 @@ def run(options: argparse.Namespace, solver: str, solve: Solve) -> None:
     solver : its name, for the file
     solve : model, settings, frames (T, D) and closeness (T,) to the solution of all frames
     """
-    for name in ("lip_sigma", "temporal", "beyond"):
+    for name in ("lip_sigma", "temporal", "beyond", "lean"):
         if not 0 <= getattr(options, name) < np.inf:
             flag = f"--{name.replace('_', '-')}"
             raise errors.InputError(flag, f"is {getattr(options, name):g}: give 0 or more")
@@ -80,7 +81,7 @@ def run(options: argparse.Namespace, solver: str, solve: Solve) -> None:
         made.basis * made.scale[:, None], made.layer, made.mask_weights, *lips
     )
     temporal = layer_solver.temporal_at(float(points.rate), options.temporal)
-    settings = layer_solver.Settings(temporal, options.beyond, options.lips_yield)
+    settings = layer_solver.Settings(temporal, options.beyond, options.lips_yield, options.lean)
     solution = solve(model, settings, offsets * made.scale, closeness)
     measures = {
         "residual": _residual(made, solution, offsets),

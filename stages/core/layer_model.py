@@ -29,6 +29,7 @@ class Model(NamedTuple):
     first, second : (R * K,) int array, where a displacement's weight and coefficient stand
     group : (R * J + K,) int array, the simplex of each entry of the solver's point
     mask_group : (R * K,) int array, the mask of each displacement
+    shares : (R * J,) float array, of each layer in the mean squared extremes under a mask
     """
 
     basis: np.ndarray
@@ -46,6 +47,7 @@ class Model(NamedTuple):
     second: np.ndarray
     group: np.ndarray
     mask_group: np.ndarray
+    shares: np.ndarray
 
     @property
     def sizes(self) -> tuple[int, int, int]:
@@ -165,7 +167,16 @@ def build(
         regions * layers + np.tile(np.arange(count), regions),
         np.concatenate([np.repeat(np.arange(regions), layers), regions + layer]),
         mask_group,
+        _shares(diagonal.reshape(regions, count), layer),
     )
+
+
+def _shares(squares, layer):
+    """Return the share of each layer in what moves under each mask; even where nothing does."""
+    layers = int(layer.max()) + 1
+    means = np.stack([squares[:, layer == j].mean(axis=1) for j in range(layers)], axis=1)
+    total = means.sum(axis=1, keepdims=True)
+    return np.where(total > 0.0, means / np.where(total > 0.0, total, 1.0), 1.0 / layers).ravel()
 
 
 def project(model: Model, frame: np.ndarray) -> Quadratic | None:

@@ -24,6 +24,7 @@ class Settings(NamedTuple):
     ----------
     temporal : weight of the last frame, at the frames' own rate
     beyond : how far amplitudes may exceed one
+    lean : pull of the weights towards the layers that move what is under each mask
     lips_yield : the part of the data term that ``1 - g`` stands before: `face`, all of it, as
         published; `mouth`, what lies under the lips' mask, so that closed lips do not hold the
         rest of the face still
@@ -32,6 +33,7 @@ class Settings(NamedTuple):
     temporal: float = 0.05
     beyond: float = 0.0
     lips_yield: str = "face"
+    lean: float = 0.0
 
 
 class State(NamedTuple):
@@ -142,7 +144,8 @@ def stated(
     yielding = quadratic
     if closeness > 0.0 and settings.lips_yield == "mouth":
         yielding = layer_model.under_lips(model, frame)
-    return layer_objective.at(model, quadratic, yielding, closeness, settings.temporal, before)
+    found = layer_objective.at(model, quadratic, yielding, closeness, settings.temporal, before)
+    return layer_objective.leaning(model, found, settings.lean) if settings.lean else found
 
 
 def describe(

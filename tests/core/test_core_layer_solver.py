@@ -37,6 +37,13 @@ def composed(model, weights, coefficients):
     return np.einsum("ld,tlj,tjd->td", model.masks, weights, shapes)
 
 
+def moving_shares(model):
+    """How much each layer's extremes move under each mask, of what all do."""
+    squares = np.array([np.sum((mask[:, None] * model.basis) ** 2, 0) for mask in model.masks])
+    means = np.stack([squares[:, model.layer == j].mean(axis=1) for j in range(3)], axis=1)
+    return means / means.sum(axis=1, keepdims=True)
+
+
 def cost(model, settings, frame, closeness, previous, weights, coefficients):
     """The objective, written out as in the method."""
     known = ~np.isnan(frame)
@@ -47,11 +54,12 @@ def cost(model, settings, frame, closeness, previous, weights, coefficients):
     closed = np.arange(len(model.layer)) == CLOSED
     lips = np.sum((weights[MOUTH] - [0, 1, 0]) ** 2)
     lips += np.sum((coefficients - closed)[spoken] ** 2)
+    leant = settings.lean * np.sum((weights - moving_shares(model)) ** 2)
     change = 0.0
     if previous is not None:
         change = np.sum((weights - previous.weights) ** 2)
         change += np.sum((coefficients - previous.coefficients) ** 2)
-    return data + closeness * lips + settings.temporal * change
+    return data + closeness * lips + settings.temporal * change + leant
 
 
 @pytest.mark.parametrize("soft", [False, True])
@@ -73,13 +81,14 @@ def test_finds_planted_layers(soft):
     temporal=st.sampled_from([0.0, 0.05, 1.0]),
     soft=st.booleans(),
     lips_yield=st.sampled_from(layer_solver.LIPS_YIELD),
+    lean=st.sampled_from([0.0, 0.03]),
     missing=st.sampled_from([0, 9]),
 )
 @hypothesis.settings(max_examples=25, deadline=None)
-def test_is_feasible_and_certified(seed, closeness, temporal, soft, lips_yield, missing):
+def test_is_feasible_and_certified(seed, closeness, temporal, soft, lips_yield, missing, lean):
     rng = np.random.default_rng(seed)
     model = built(rng, soft_masks(rng) if soft else None)
-    settings = layer_solver.Settings(temporal, lips_yield=lips_yield)
+    settings = layer_solver.Settings(temporal, lips_yield=lips_yield, lean=lean)
     frames = composed(model, *drawn(rng, 3)) + 0.3 * rng.normal(size=(3, SIZE)) / np.sqrt(SIZE)
     frames[1, rng.permutation(SIZE)[:missing]] = np.nan
     state = None
@@ -99,6 +108,24 @@ def test_is_feasible_and_certified(seed, closeness, temporal, soft, lips_yield, 
         near = 0.05 * drawn(rng, 20)[0] + 0.95 * found.weights
         costs = [cost(*given, w, found.coefficients) for w in near]
         assert found.bound <= min(*costs, *drawn_costs, found.objective) + 1e-12
+
+
+def test_lean_takes_the_say_from_layers_that_move_nothing():
+    rng = np.random.default_rng(3)
+    basis = rng.normal(size=(SIZE, sum(COUNTS)))
+    # a neutral in each layer, and no speech under the last mask
+    basis[:, [0, 5, 9]] = 0.0
+    basis[-SIZE // 3 :, LAYER == SPEECH] = 0.0
+    model = layer_model.build(basis, LAYER, sharp_masks())
+    weights, coefficients = drawn(rng, 20)
+    frames = composed(model, weights, coefficients)
+    free, leant = (
+        layer_solver.solve(model, layer_solver.Settings(0.0, lean=lean), frames, np.zeros(20))
+        for lean in (0.0, 1.0)
+    )
+    assert leant.weights[:, 2, SPEECH].mean() < 0.3 * free.weights[:, 2, SPEECH].mean()
+    scale = np.sum(frames**2, axis=1)
+    assert np.max(leant.data / scale) < 0.02
 
 
 def test_is_as_good_as_many_starts():

@@ -125,6 +125,7 @@ rule transfer_layers:
         lips_yield=character_cell("lips_yield"),
         temporal=character_cell("temporal"),
         beyond=character_cell("beyond"),
+        lean=character_cell("lean"),
     shell:
         "python -m stages.transfer_layers"
         " --simplices {input.simplices:q}"
@@ -135,6 +136,7 @@ rule transfer_layers:
         " --lips-yield {params.lips_yield:q}"
         " --temporal {params.temporal}"
         " --beyond {params.beyond}"
+        " --lean {params.lean}"
         " --layers {output.layers:q}"
         " 2> {log:q}"
 
@@ -162,6 +164,7 @@ rule transfer_layers_published:
         lips_yield=character_cell("lips_yield"),
         temporal=character_cell("temporal"),
         beyond=character_cell("beyond"),
+        lean=character_cell("lean"),
         seed=config["seed"],
     shell:
         "python -m stages.transfer_layers_published"
@@ -173,6 +176,7 @@ rule transfer_layers_published:
         " --lips-yield {params.lips_yield:q}"
         " --temporal {params.temporal}"
         " --beyond {params.beyond}"
+        " --lean {params.lean}"
         " --seed {params.seed}"
         " --layers {output.layers:q}"
         " 2> {log:q}"
