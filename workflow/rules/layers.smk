@@ -76,6 +76,8 @@ rule assemble_simplices:
         code=code_of("assemble_simplices"),
         shots=layer_shots,
         points=points_of,
+        expression_table=table_path("expressions"),
+        mask_table=table_path("actor_masks"),
         rows=expression_rows,
         mask_rows=actor_mask_rows,
         balance=character_cell("balance"),
@@ -85,8 +87,8 @@ rule assemble_simplices:
     shell:
         "python -m stages.assemble_simplices"
         " --actor {wildcards.actor:q}"
-        " --expression-table config/expressions.tsv"
-        " --mask-table config/actor_masks.tsv"
+        " --expression-table {params.expression_table:q}"
+        " --mask-table {params.mask_table:q}"
         " --shots {params.shots:q}"
         " --expressions {input.expressions:q}"
         " --points {params.points:q}"
