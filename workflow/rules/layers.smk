@@ -74,6 +74,8 @@ rule assemble_simplices:
     threads: 1
     params:
         code=code_of("assemble_simplices"),
+        expression_table="config/expressions.tsv",
+        mask_table="config/actor_masks.tsv",
         shots=layer_shots,
         points=points_of,
         rows=expression_rows,
@@ -85,8 +87,8 @@ rule assemble_simplices:
     shell:
         "python -m stages.assemble_simplices"
         " --actor {wildcards.actor:q}"
-        " --expression-table config/expressions.tsv"
-        " --mask-table config/actor_masks.tsv"
+        " --expression-table {params.expression_table:q}"
+        " --mask-table {params.mask_table:q}"
         " --shots {params.shots:q}"
         " --expressions {input.expressions:q}"
         " --points {params.points:q}"
