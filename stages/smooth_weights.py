@@ -223,7 +223,8 @@ def _smoothed(
         if rate < source.rate:
             calm = motion_filter.filtered(calm, per_second, cutoff, np.zeros(calm.shape))
         made = local_trust.blended(calm, made, events, per_second)
-    return made if whole is None else whole_parts.limited(made, values, whole)
+        made = made if whole is None else whole_parts.limited(made, values, whole)
+    return made
 
 
 def main(argv: Sequence[str]) -> None:

@@ -160,3 +160,5 @@ def test_parts_of_a_whole_stay_parts():
     made = whole_parts.limited(values, before, np.array([0, 0, 1]))
     expected = [[0.8 / 1.2, 0.4 / 1.2, 0.5], [0, 0.3, 0.9], [0.5 / 1.1, 0.6 / 1.1, 0.7]]
     np.testing.assert_allclose(made, expected)
+    made = whole_parts.limited(values - 1, before - 1, np.array([0, 0, 1]))
+    np.testing.assert_array_equal(made >= np.nanmin(before - 1, axis=0), True)

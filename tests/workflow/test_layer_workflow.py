@@ -251,8 +251,8 @@ def test_faulty_characters_leave_the_others_their_takes(show):
         assert len(lines) == 1 and re.fullmatch(f"error: {pattern}", lines[0]), log
         assert lines[0].split(":")[1].strip() in page
     assert names_in(take(show, "plain")) > TAKE | SOLVED | {"layers/speech.csv"}
-    assert not (show.folder / "results/cast/eve/black").exists()
-    assert not (show.folder / "results/cast/eve/unsummed").exists()
+    assert not (show.folder / "results/cast/eve/black/rig.npz").exists()
+    assert not (show.folder / "results/cast/eve/unsummed/rig.npz").exists()
 
 
 def without(*starts):

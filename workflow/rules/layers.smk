@@ -74,6 +74,8 @@ rule assemble_simplices:
     threads: 1
     params:
         code=code_of("assemble_simplices"),
+        expression_table="config/expressions.tsv",
+        mask_table="config/actor_masks.tsv",
         shots=layer_shots,
         points=points_of,
         expression_table=table_path("expressions"),
