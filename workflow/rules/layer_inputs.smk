@@ -51,15 +51,6 @@ def layer_expressions(wildcards):
     return expand("results/shots/{shot}/expression.parquet", shot=layer_shots(wildcards))
 
 
-def table_path(name):
-    """Return a function that gives the path of a table, whether it exists or not."""
-
-    def path(wildcards):
-        return f"config/{name}.tsv"
-
-    return path
-
-
 def layer_tables(wildcards):
     """Return the tables of extremes and masks that exist: extremes are proposed before any is."""
     return present(["config/expressions.tsv", "config/actor_masks.tsv"])

@@ -78,8 +78,6 @@ rule assemble_simplices:
         mask_table="config/actor_masks.tsv",
         shots=layer_shots,
         points=points_of,
-        expression_table=table_path("expressions"),
-        mask_table=table_path("actor_masks"),
         rows=expression_rows,
         mask_rows=actor_mask_rows,
         balance=character_cell("balance"),
