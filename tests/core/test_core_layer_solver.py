@@ -282,17 +282,6 @@ def test_amplitudes_follow_what_is_too_large():
     np.testing.assert_allclose(soft.outside, hard.outside, atol=1e-3)
 
 
-def test_outside_is_the_distance_from_the_simplices():
-    rng = np.random.default_rng(10)
-    basis = np.linalg.qr(rng.normal(size=(SIZE, 3)))[0]
-    model = layer_model.build(basis, np.zeros(3, int), np.ones((1, SIZE)))
-    beyond = (
-        basis @ [2.0, 0.0, 0.0] + 5.0 * np.linalg.qr(np.c_[basis, rng.normal(size=SIZE)])[0][:, 3]
-    )
-    found, _ = layer_solver.solve_frame(model, layer_solver.Settings(0.0), beyond)
-    assert found.outside == pytest.approx(1.0, abs=1e-5)
-
-
 @pytest.mark.parametrize("rate", [15, 30, 60, 120])
 def test_temporal_weight_forgets_alike_at_all_rates(rate):
     weight = layer_solver.temporal_at(rate, 0.05)
