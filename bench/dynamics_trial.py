@@ -259,7 +259,7 @@ def jitter(track: Track) -> None:
             made.append(linear_dynamics.smooth(linear_dynamics.learn([noisy[:last]]), given))
             ratios = local_trend.learn([noisy[:last]], [rate])
             made.append(local_trend.smooth(given, rate, ratios, np.ones(given.shape[1])))
-            made.append(local_trust.blended(made[-1], made[1], off, rate))
+            made.append(local_trust.blended(given, made[-1], made[1], off, rate))
             cells = "".join(f"{_rms(one - truth[last:]):15.5f}" for one in made)
             _say(f"{rate:8}{noise:8.3f}{cells}")
 

@@ -222,7 +222,7 @@ def _smoothed(
         calm = local_trend.smooth(values, per_second, learnt.jitter, asked.strength)
         if rate < source.rate:
             calm = motion_filter.filtered(calm, per_second, cutoff, np.zeros(calm.shape))
-        made = local_trust.blended(calm, made, events, per_second)
+        made = local_trust.blended(values, calm, made, events, per_second)
         made = made if whole is None else whole_parts.limited(made, values, whole)
     return made
 

@@ -1,7 +1,8 @@
 """Two versions of curves in one: a calm one, and a keen one where it shows more than jitter.
 
 The local Wiener filter of Lee 1980 on what the keen one has and the calm one has not: its mean
-square near a frame, less that of jitter, is what moves there.
+square near a frame, less that of jitter, is what moves there. Where the calm one is nearer to what
+was measured, as it is without jitter, there is nothing to gain.
 """
 
 import numpy as np
@@ -13,12 +14,15 @@ TRUST = 3.0
 NEAR_S = 0.03
 
 
-def blended(calm: np.ndarray, keen: np.ndarray, events: np.ndarray, rate: float) -> np.ndarray:
+def blended(
+    measured: np.ndarray, calm: np.ndarray, keen: np.ndarray, events: np.ndarray, rate: float
+) -> np.ndarray:
     """Return the calm curves, and the keen ones in events and wherever something moves fast.
 
     Parameters
     ----------
-    calm, keen : (T, K) float arrays, finite
+    measured : (T, K) float array, finite
+    calm, keen : (T, K) float arrays, what two filters make of it
     events : (T, K) float array in 0..1, how far a frame must be as in the keen curve
     rate : frames per second
 
@@ -27,7 +31,9 @@ def blended(calm: np.ndarray, keen: np.ndarray, events: np.ndarray, rate: float)
     (T, K) float array, between the two
     """
     apart = keen - calm
-    jitter = motion_events.noise(apart) ** 2
+    least = TRUST * motion_events.noise(apart) ** 2
     near = multiresolution.smoothed(apart**2, max(1, round(NEAR_S * rate)))
-    trusted = np.clip(1.0 - TRUST * jitter / np.where(near > 0.0, near, 1.0), 0.0, 1.0)
-    return calm + np.maximum(events, trusted) * apart
+    moves = near > least
+    trusted = np.where(moves, 1.0 - least / np.where(moves, near, 1.0), 0.0)
+    gains = np.sum((measured - keen) ** 2, axis=0) < np.sum((measured - calm) ** 2, axis=0)
+    return calm + gains * np.maximum(events, trusted) * apart
