@@ -35,7 +35,7 @@ import numpy as np
 
 from stages import cli
 from stages.core import (
-    inbetween,
+    between_poses,
     kept_moments,
     local_trend,
     local_trust,
@@ -188,7 +188,7 @@ def _gaps_filled(
     for name, known in zip(asked.names, np.isfinite(seen).any(axis=0), strict=True):
         if not known:
             raise errors.InputError(path, f"{name} is nowhere tracked: see the shot's confidence")
-    made = inbetween.fill(learnt.motion, seen, float(solved.rate), asked.low, asked.high)
+    made = between_poses.fill(learnt.motion, seen, float(solved.rate), asked.low, asked.high)
     if solved.meta["kind"] == PARTS:
         made = np.where(np.isfinite(seen), seen, whole_parts.limited(made, seen, masks))
     return np.column_stack([made, np.nan_to_num(values[:, -1])]), observed
