@@ -31,7 +31,7 @@ import scipy.signal
 
 from bench import gap_fillers, linear_dynamics
 from stages import import_curves
-from stages.core import local_trend, motion_filter
+from stages.core import local_trend, local_trust, motion_filter
 from stages.files import series
 
 TRACK, OTHER = "livelink/alex_rom_3.csv", "livelink/MySlate_3_Jason_Millers_iPhone.csv"
@@ -242,7 +242,7 @@ def jitter(track: Track) -> None:
     edge = int(SHARE * len(track.values))
     curve = scipy.interpolate.PchipInterpolator(np.arange(len(track.values)), track.values)
     _say("\njitter, learnt from the first 60 %")
-    names = ("raw", "10 Hz", "7 Hz", "5 Hz", "linear system", "learnt ratios")
+    names = ("raw", "10 Hz", "7 Hz", "5 Hz", "linear system", "learnt ratios", "with trust")
     _say(f"{'frames/s':>8}{'noise':>8}" + "".join(f"{name:>15}" for name in names))
     for rate in NOISE_RATES:
         finer = rate / track.rate
@@ -259,6 +259,7 @@ def jitter(track: Track) -> None:
             made.append(linear_dynamics.smooth(linear_dynamics.learn([noisy[:last]]), given))
             ratios = local_trend.learn([noisy[:last]], [rate])
             made.append(local_trend.smooth(given, rate, ratios, np.ones(given.shape[1])))
+            made.append(local_trust.blended(given, made[-1], made[1], off, rate))
             cells = "".join(f"{_rms(one - truth[last:]):15.5f}" for one in made)
             _say(f"{rate:8}{noise:8.3f}{cells}")
 

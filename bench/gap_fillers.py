@@ -10,7 +10,7 @@ import numpy as np
 import scipy.interpolate
 
 from bench import linear_dynamics
-from stages.core import inbetween, pca
+from stages.core import between_poses, pca
 
 Filler = Callable[[np.ndarray], np.ndarray]
 # settings that were best where nothing is tested: learnt from the first two fifths of the track and
@@ -92,8 +92,8 @@ def system(takes: list[np.ndarray]) -> Filler:
 
 def learnt(takes: list[np.ndarray], rates: list[float], rate: float) -> Filler:
     """Learn the project's own motion between poses."""
-    model = inbetween.learn(takes, rates)
-    return lambda values: inbetween.fill(model, values, rate)
+    model = between_poses.learn(takes, rates)
+    return lambda values: between_poses.fill(model, values, rate)
 
 
 def kriging(takes: list[np.ndarray]) -> Filler:

@@ -1,8 +1,8 @@
-"""Expected states of a linear dynamical system: Kalman filter, Rauch-Tung-Striebel smoother.
+"""Expected states of a linear dynamical system: Kalman filter and smoother.
 
     s_t = F s_t-1 + w,  w ~ N(0, Q);   x_t = C s_t[:C] + v,  v ~ N(0, diag R)
 
-Kalman 1960; Rauch, Tung & Striebel 1965, as in Shumway & Stoffer 1982, appendix A. The filter is
+Kalman 1960; Rauch et al. 1965, as in Shumway & Stoffer 1982, appendix A. The filter is
 in information form, so that curves which were not observed are left out. Covariances depend on what
 was observed alone: once they have settled they are kept, and a long take costs little.
 """

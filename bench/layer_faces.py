@@ -219,7 +219,7 @@ def performed(
     drift = _smooth(rng.normal(size=(frames, extra.shape[1])), 8.0)
     drift *= extra_mm / max(np.sqrt(np.mean((drift @ extra.T * face.unit) ** 2)), 1e-12)
     noise = noise_mm * rng.normal(size=exact.shape) / face.unit
-    apart = 1.0 - weights[:, MOUTH, SPEECH] * coefficients[:, CLOSED]
+    apart = 1.0 - weights[:, MOUTH, SPEECH] / 0.75 * coefficients[:, CLOSED]
     closeness = np.exp(-0.5 * (apart / 0.25) ** 2)
     blink = closing(face, exact)
     return Performance(exact + noise + drift @ extra.T, weights, coefficients, closeness, blink)

@@ -13,6 +13,12 @@ import numpy as np
 from bench import layer_faces, rig_take
 
 PICKED_ROWS = 2400
+UPPER_LIP, LOWER_LIP = 62, 66  # of the 68 landmarks, which come first
+RIGHT_EYE, LEFT_EYE = range(36, 42), range(42, 48)
+SIGMA = 0.02
+UPPER_LIP, LOWER_LIP = 62, 66  # of the 68 landmarks, which come first
+EYES = range(36, 42), range(42, 48)
+SIGMA = 0.02
 SPOKEN = ("jaw", "mouthFunnel", "mouthPucker", "mouthClose", "mouthUpperUp", "mouthLowerDown")
 SPOKEN += ("mouthRoll", "mouthStretch", "mouthPress", "tongue")
 
@@ -33,8 +39,16 @@ def take(folder: Path) -> tuple[layer_faces.Face, layer_faces.Performance]:
     noise = 0.3 * np.random.default_rng(0).normal(size=(len(rows), shapes.shape[1]))
     frames = (rows @ shapes + noise) / face.unit
     shut = rows @ shapes / face.unit
-    still = np.zeros(len(rows))
-    return face, layer_faces.Performance(frames, None, None, still, layer_faces.closing(face, shut))
+    closeness = _closeness(rig_take.actor(folder, names), rows)
+    blink = layer_faces.closing(face, shut)
+    return face, layer_faces.Performance(frames, None, None, closeness, blink)
+
+
+def _closeness(rig, rows) -> np.ndarray:
+    """Return ``exp(-d^2 / 2 sigma^2)`` of the gap between the inner lips, in face units."""
+    gap = np.maximum(rows @ (rig.deltas[:, UPPER_LIP, 1] - rig.deltas[:, LOWER_LIP, 1]), 0.0)
+    eyes = [rig.neutral[list(eye)].mean(axis=0) for eye in EYES]
+    return np.exp(-0.5 * (gap / np.linalg.norm(eyes[0] - eyes[1]) / SIGMA) ** 2)
 
 
 def _spread(points: np.ndarray, count: int) -> np.ndarray:

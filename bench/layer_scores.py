@@ -106,6 +106,18 @@ def brute_force(model, objective, draws, seed) -> float:
     return min(layer_search.descend(model, objective, start)[0] for start in starts)
 
 
+def revivable(model, solution, frames, draws) -> tuple[int, float]:
+    """Return of how many frames a layer is without weight, and what share many starts better."""
+    found = np.flatnonzero((solution.weights.max(axis=1) < DEAD).any(axis=1))
+    better = []
+    for index in found[np.linspace(0, len(found) - 1, min(len(found), 20)).astype(int)]:
+        quadratic = layer_model.project(model, frames[index])
+        objective = layer_objective.at(model, quadratic, quadratic, 0.0, 0.0, None)
+        best = brute_force(model, objective, draws, int(index))
+        better.append(best < solution.objective[index] - 1e-6)
+    return len(found), float(np.mean(better)) if better else 0.0
+
+
 def dead(solution) -> float:
     """Return the share of frames and layers without weight under any mask."""
     return float(np.mean(solution.weights.max(axis=1) < DEAD))
@@ -117,8 +129,24 @@ def jitter(face, solution) -> float:
     return float(rms(np.diff(shape, 2, axis=0)))
 
 
-def peaks_kept(closing, truth) -> np.ndarray:
-    """Return what is left (N,) of the peaks of a curve, each at the very frame of the truth's."""
+def peaks_kept(closing, truth, closeness=None) -> np.ndarray:
+    """Return what is left (N,) of a curve's peaks, at the truth's frames; of those of closed lips.
+
+    Those of all frames where no closeness is given.
+    """
     middle = truth[1:-1]
     peak = 1 + np.flatnonzero((middle > truth[:-2]) & (middle >= truth[2:]) & (middle > 0.5))
+    if closeness is not None:
+        peak = peak[closeness[peak] > 0.9]
     return closing[peak] / truth[peak]
+
+
+def closed_lips(model, face, performance, lip_bias) -> tuple[np.ndarray, np.ndarray]:
+    """Return residuals (R,) where lips are closed [mm], and what is left of the blinks there."""
+    settings = layer_solver.Settings(0.05, 0.0, lip_bias)
+    got = layer_solver.solve(model, settings, performance.frames, performance.closeness)
+    shape = layer_faces.composed(face, got.weights, got.coefficients)
+    wrong = ((shape - performance.frames) * face.unit)[performance.closeness > 0.9]
+    residuals = np.array([rms(wrong[:, mask > 0.5]) for mask in face.masks])
+    kept = peaks_kept(layer_faces.closing(face, shape), performance.blink, performance.closeness)
+    return residuals, kept

@@ -10,6 +10,7 @@ mean square of an extreme is one. Printed:
 - gap: objective less the proven bound, and how often the best of many drawn starts is better
 - SLSQP: from the very start and previous state of each frame, on the same Gram matrices with
   analytic gradients; `descent` is the solver from that start alone, `whole` all that it does
+- closed lips: the data term gives way to them as a whole, as published, or the mouth's alone
 - temporal weight: RMS second difference, blinks' depth left at the frame of the peak, dead layers
 - beyond: residual of the vignette played 1.3 times too large
 """
@@ -95,6 +96,7 @@ def _trial(title, face, performance) -> None:
     _slsqp(model, performance)
     _published(model, performance)
     _smoothing(face, model, performance)
+    _lips(face, model, performance)
     _say("")
 
 
@@ -128,6 +130,8 @@ def _gaps(model, frames, plain) -> None:
         objective = layer_objective.at(model, quadratic, quadratic, 0.0, 0.0, None)
         best = layer_scores.brute_force(model, objective, DRAWS, int(index))
         better.append(plain.objective[index] - best)
+    count, revived = layer_scores.revivable(model, plain, frames, DRAWS)
+    _say(f"  frames with a layer of no weight: {count}; many starts better {revived:.0%} of them")
     better = np.array(better)
     _say(
         f"  best of {DRAWS} drawn starts better by 1e-6: {np.mean(better > 1e-6):.0%} of {BRUTE}"
@@ -181,6 +185,15 @@ def _smoothing(face, model, performance) -> None:
             f"  {np.quantile(left, 0.1):11.3f}  {layer_scores.dead(got):11.1%}"
             f"  {np.mean(gap < 1e-3):10.1%}  {1 / taken:8.0f}"
         )
+
+
+def _lips(face, model, performance) -> None:
+    """Print what closed lips cost the rest of the face, as published and not."""
+    for bias in ("mouth", "published"):
+        residuals, left = layer_scores.closed_lips(model, face, performance, bias)
+        text = ", ".join(f"{name} {e:.2f}" for name, e in zip(MASKS, residuals, strict=True))
+        mean = f", {len(left)} blinks {left.mean():.2f} left" if len(left) else ""
+        _say(f"  closed lips, {bias}: residual [mm] {text}{mean}")
 
 
 def _beyond(face, extra) -> None:

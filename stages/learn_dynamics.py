@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from stages import cli
-from stages.core import inbetween, local_trend
+from stages.core import between_poses, local_trend
 from stages.files import dynamics, errors, rig, series, solutions
 
 
@@ -46,11 +46,13 @@ def main(argv: Sequence[str]) -> None:
         message = "in no basis take is every shape tracked somewhere: see the shots' confidence"
         raise errors.InputError(options.solutions[0], message)
     try:
-        motion = inbetween.learn(takes, rates)
+        motion = between_poses.learn(takes, rates)
     except ValueError as error:
         message = f"{error}: mark longer shots as basis, or set gap_filling to linear"
         raise errors.InputError(options.solutions[0], message) from error
-    whole = [inbetween.fill(motion, take, rate) for take, rate in zip(takes, rates, strict=True)]
+    whole = [
+        between_poses.fill(motion, take, rate) for take, rate in zip(takes, rates, strict=True)
+    ]
     learnt = dynamics.Dynamics(shapes, motion, local_trend.learn(whole, rates))
     dynamics.write(options.dynamics, learnt, [*used, options.rig])
     cli.logger.info("%d takes, gaps of up to %.2f s", len(takes), motion.durations[-1])

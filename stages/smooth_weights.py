@@ -10,8 +10,8 @@ In this order, because each step needs the one before:
 4. The multiresolution filter removes what lies above 10 Hz, or a third of the character's rate
    where that is lower than the source's, divided by the channel's smoothing; blinks and closures
    are left. So nothing is aliased by the next step. Weights of layers stay simplex weights: under a
-   mask, none falls below 0 and their sum does not grow. Smoothing `dynamics` takes out the jitter
-   that the motion's own statistics tell, and then only what the next step would alias.
+   mask, none falls below 0 and their sum does not grow. Where nothing is fast, smoothing `dynamics`
+   takes out instead the jitter that the motion's own statistics tell.
 5. Weights are interpolated linearly and rotations along the great circle; at the source's own rate
    every frame comes through unchanged. With a tempo the frame at time t shows the performance at
    `tempo t`.
@@ -35,9 +35,10 @@ import numpy as np
 
 from stages import cli
 from stages.core import (
-    inbetween,
+    between_poses,
     kept_moments,
     local_trend,
+    local_trust,
     motion_filter,
     resample,
     whole_parts,
@@ -187,7 +188,7 @@ def _gaps_filled(
     for name, known in zip(asked.names, np.isfinite(seen).any(axis=0), strict=True):
         if not known:
             raise errors.InputError(path, f"{name} is nowhere tracked: see the shot's confidence")
-    made = inbetween.fill(learnt.motion, seen, float(solved.rate), asked.low, asked.high)
+    made = between_poses.fill(learnt.motion, seen, float(solved.rate), asked.low, asked.high)
     if solved.meta["kind"] == PARTS:
         made = np.where(np.isfinite(seen), seen, whole_parts.limited(made, seen, masks))
     return np.column_stack([made, np.nan_to_num(values[:, -1])]), observed
@@ -216,15 +217,14 @@ def _smoothed(
     per_second = float(source.rate)
     events = kept_moments.find(values, asked.names, asked.keep, per_second, gap)
     whole = masks if source.meta["kind"] == PARTS else None
-    if options.smoothing == "multiresolution":
-        return motion_filter.filtered(values, per_second, cutoff, events, whole)
-    calm = local_trend.smooth(values, per_second, learnt.jitter, asked.strength)
-    calm = values + (1.0 - events) * (calm - values)
-    if whole is not None:
-        calm = whole_parts.limited(calm, values, whole)
-    if rate >= source.rate:
-        return calm
-    return motion_filter.filtered(calm, per_second, cutoff, events, whole)
+    made = motion_filter.filtered(values, per_second, cutoff, events, whole)
+    if options.smoothing == "dynamics":
+        calm = local_trend.smooth(values, per_second, learnt.jitter, asked.strength)
+        if rate < source.rate:
+            calm = motion_filter.filtered(calm, per_second, cutoff, np.zeros(calm.shape))
+        made = local_trust.blended(values, calm, made, events, per_second)
+        made = made if whole is None else whole_parts.limited(made, values, whole)
+    return made
 
 
 def main(argv: Sequence[str]) -> None:

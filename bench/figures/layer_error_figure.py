@@ -87,8 +87,9 @@ def _caption(main, small):
         "holds to the last frame), by these as delivered, with both biases (dashes), and by one "
         "layer alone, the nearest point of its simplex by the same data term. Published order of "
         f"the means: {' < '.join(PUBLISHED)}; here {_order(errors)} by the markers and "
-        f"{_order(main.of_kind['video'])} by the film's points. The layered error is the lowest "
-        f"on {lowest:.0f} % of the frames. Means of {', '.join(PUBLISHED)} in mm by mask: {masks}. "
+        f"{_order(main.of_kind['video'])} by the film's points. By the markers the layered "
+        f"error is the lowest on {lowest:.0f} % of the frames. Means of "
+        f"{', '.join(PUBLISHED)} in mm by mask: {masks}. "
         "Lower row: the same where the data term sees the markers alone, on the shot that the "
         f"extremes were picked from, and on one of markers without film: {others}."
     )

@@ -21,9 +21,6 @@ class Model(NamedTuple):
     lips : (N,) int array, entries of the solver's point that closed lips pull; none without bias
     closed_lips : (N,) float array, where they pull them
     lip_share : (D,) float array, the lips' mask; zero without bias
-    gap_row : (R * K,) float array, the gap of the lips by displacements under their mask, over
-        `gap_unit`; zero where no gaps are known
-    gap_unit : float, root mean square of the extremes' gaps; zero where no gaps are known
     lip_gram : (R * K, R * K) float array, as `gram`, each coordinate by its `lip_share`
     pairs : (N, 2) int array, masks that overlap, each with itself too
     gram : (R * K, R * K) float array, ``(M_l B)'(M_m B)``
@@ -32,6 +29,9 @@ class Model(NamedTuple):
     first, second : (R * K,) int array, where a displacement's weight and coefficient stand
     group : (R * J + K,) int array, the simplex of each entry of the solver's point
     mask_group : (R * K,) int array, the mask of each displacement
+    shares : (R * J,) float array, of each layer in the mean squared extremes under a mask
+    gap_row : (R * K,) float array, the lips' gap by displacements, over the root mean square of
+        the extremes' gaps; zero where no gaps are known
     """
 
     basis: np.ndarray
@@ -40,8 +40,6 @@ class Model(NamedTuple):
     lips: np.ndarray
     closed_lips: np.ndarray
     lip_share: np.ndarray
-    gap_row: np.ndarray
-    gap_unit: float
     lip_gram: np.ndarray
     pairs: np.ndarray
     gram: np.ndarray
@@ -51,6 +49,8 @@ class Model(NamedTuple):
     second: np.ndarray
     group: np.ndarray
     mask_group: np.ndarray
+    shares: np.ndarray
+    gap_row: np.ndarray
 
     @property
     def sizes(self) -> tuple[int, int, int]:
@@ -75,7 +75,7 @@ class Quadratic(NamedTuple):
     span: float
 
 
-def _check(basis, layer, masks, lip_mask, speech_layer, closed, gaps):
+def _check(basis, layer, masks, gaps, lip_mask, speech_layer, closed):
     """Refuse arrays that do not fit together."""
     if basis.ndim != 2 or layer.shape != basis.shape[1:] or masks.shape[1:] != basis.shape[:1]:
         raise ValueError(
@@ -96,13 +96,10 @@ def _check(basis, layer, masks, lip_mask, speech_layer, closed, gaps):
             f"lip_mask, speech_layer and closed {bias} must be all -1, or one of {len(masks)} masks"
             f" and an extreme of that layer"
         )
-    if len(gaps) and not (
-        lip_mask >= 0 and gaps.shape == layer.shape and (gaps >= 0.0).all() and (gaps < np.inf).all()
-    ):
-        raise ValueError(
-            f"gaps must be those of {len(layer)} extremes, at least zero, got {gaps.shape} with"
-            f" lip_mask {lip_mask}"
-        )
+    if gaps.shape != layer.shape or not ((gaps >= 0.0) & (gaps < np.inf)).all():
+        raise ValueError(f"gaps {gaps.shape} must be those of {len(layer)} extremes, at least zero")
+    if gaps.any() and lip_mask < 0:
+        raise ValueError(f"gaps up to {gaps.max()} need a lip mask")
 
 
 def _gram(basis, masks, pairs, share=1.0):
@@ -127,15 +124,6 @@ def _lip_bias(layer, regions, lip_mask, speech_layer, closed):
     return places, np.append(np.arange(layers) == speech_layer, spoken == closed).astype(float)
 
 
-def _gap_row(gaps, regions, count, lip_mask):
-    """Return the gap of the lips by displacements, in units of its root mean square, and that."""
-    row, unit = np.zeros((regions, count)), 0.0
-    if gaps.any():
-        unit = float(np.sqrt(np.mean(gaps**2)))
-        row[lip_mask] = gaps / unit
-    return row.ravel(), unit
-
-
 def build(
     basis: np.ndarray,
     layer: np.ndarray,
@@ -143,7 +131,7 @@ def build(
     lip_mask: int = -1,
     speech_layer: int = -1,
     closed: int = -1,
-    gaps: np.ndarray | tuple = (),
+    gaps: np.ndarray | None = None,
 ) -> Model:
     """Precompute everything that does not depend on a frame (Kholgade 2011, eq. 4).
 
@@ -154,8 +142,8 @@ def build(
     masks : (R, D) float array, at least zero, one at every coordinate in sum
     lip_mask, speech_layer, closed : int
         the mask and layer of the lip bias and the index of its extreme /m/; all -1 for none
-    gaps : (K,) float array, how far each extreme's lips stand further apart than closed lips, at
-        least zero; or nothing
+    gaps : (K,) float array, how far the lips of each extreme stand apart, zero where closed; None
+        = not known
 
     Raises
     ------
@@ -163,8 +151,9 @@ def build(
         if the arrays do not fit together, a layer has no extreme, or masks do not sum to one
     """
     basis, masks = np.array(basis, float), np.array(masks, float)
-    layer, gaps = np.array(layer, np.int64), np.array(gaps, float)
-    _check(basis, layer, masks, lip_mask, speech_layer, closed, gaps)
+    layer = np.array(layer, np.int64)
+    gaps = np.zeros(len(layer)) if gaps is None else np.array(gaps, float)
+    _check(basis, layer, masks, gaps, lip_mask, speech_layer, closed)
     regions, layers, count = len(masks), int(layer.max()) + 1, len(layer)
     pairs = np.ascontiguousarray(np.argwhere((masks @ masks.T) > 0.0), np.int64)
     gram = _gram(basis, masks, pairs)
@@ -180,7 +169,6 @@ def build(
         masks,
         *_lip_bias(layer, regions, lip_mask, speech_layer, closed),
         lip_share,
-        *_gap_row(gaps, regions, count, lip_mask),
         _gram(basis, masks, pairs, lip_share),
         pairs,
         gram,
@@ -190,7 +178,25 @@ def build(
         regions * layers + np.tile(np.arange(count), regions),
         np.concatenate([np.repeat(np.arange(regions), layers), regions + layer]),
         mask_group,
+        _shares(diagonal.reshape(regions, count), layer),
+        _gap_row(gaps, regions, lip_mask),
     )
+
+
+def _gap_row(gaps, regions, lip_mask):
+    """Return the gap of the lips by displacements, in units of its root mean square."""
+    found = np.zeros((regions, len(gaps)))
+    if gaps.any():
+        found[lip_mask] = gaps / np.sqrt(np.mean(gaps**2))
+    return found.ravel()
+
+
+def _shares(squares, layer):
+    """Return the share of each layer in what moves under each mask; even where nothing does."""
+    layers = int(layer.max()) + 1
+    means = np.stack([squares[:, layer == j].mean(axis=1) for j in range(layers)], axis=1)
+    total = means.sum(axis=1, keepdims=True)
+    return np.where(total > 0.0, means / np.where(total > 0.0, total, 1.0), 1.0 / layers).ravel()
 
 
 def project(model: Model, frame: np.ndarray) -> Quadratic | None:
@@ -244,30 +250,6 @@ def under_lips(model: Model, frame: np.ndarray) -> Quadratic:
         gram = gram - _gram(model.basis[missing], model.masks[:, missing], model.pairs, share)
     energy = float(known @ np.where(missing, 0.0, frame))
     return Quadratic(energy, ((model.masks * known) @ model.basis).ravel(), gram, 0.0)
-
-
-def with_gap(model: Model, quadratic: Quadratic, apart: float, weight: float) -> Quadratic:
-    """Add the gap of the lips to a frame's data term, one more row of data.
-
-    ``weight * scale * (sum_k u_lip,k gap_k - apart)^2 / unit^2``, where the unit is the root mean
-    square of the extremes' gaps and scale the mean squared length of a displacement. The gap is
-    linear in u: extremes with closed lips, mixed in whatever shares, leave them closed.
-
-    Parameters
-    ----------
-    model, quadratic : see `Model` and `Quadratic`
-    apart : float, how far the lips stand further apart than closed ones
-    weight : float, at least zero
-    """
-    if model.gap_unit == 0.0:
-        return quadratic
-    share, target = weight * model.scale, apart / model.gap_unit
-    return Quadratic(
-        quadratic.energy + share * target**2,
-        quadratic.linear + share * target * model.gap_row,
-        quadratic.gram + share * np.outer(model.gap_row, model.gap_row),
-        quadratic.span,
-    )
 
 
 def data(quadratic: Quadratic, displacements: np.ndarray) -> float:

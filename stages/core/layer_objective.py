@@ -62,6 +62,28 @@ def at(
     return Objective(quadratic, pull, target, fixed)
 
 
+def leaning(model: layer_model.Model, objective: Objective, lean: float) -> Objective:
+    """Add a slight pull of the weights towards the layers that move what is under each mask.
+
+    ``lean |w_l - s_l|^2`` with ``s_lj`` the share of layer j in the mean squared extremes under
+    mask l. It decides where the data term cannot: all layers share the neutral, so that a layer
+    which moves nothing there, as speech does at the eyes, could hold the others back at no cost.
+
+    Parameters
+    ----------
+    model, objective : see above
+    lean : float, at least 0
+    """
+    weights = slice(0, len(model.shares))
+    old, target, pull = objective.target[weights], objective.target.copy(), objective.pull.copy()
+    held = pull[weights].copy()
+    pull[weights] += lean
+    mean = (held * old + lean * model.shares) / pull[weights]
+    target[weights] = mean
+    apart = np.sum(held * (old - mean) ** 2 + lean * (model.shares - mean) ** 2)
+    return Objective(objective.quadratic, pull, target, objective.fixed + float(apart))
+
+
 def value(model: layer_model.Model, objective: Objective, point: np.ndarray) -> float:
     """Return the objective at a point."""
     quadratic, pull, target, fixed = objective

@@ -15,7 +15,6 @@ from stages.core import (
 TOLERANCE = 1e-12
 CLOSE_ENOUGH = 1e-9
 DRAWS = 4
-UNSEEN = 1e-6
 
 
 class Guide(NamedTuple):
@@ -78,9 +77,10 @@ def best(
 ) -> Found:
     """Return the best that was found from the last frame's point and from others.
 
-    The others are tried where the bound leaves room: the relaxation, each layer alone if that is
-    better already, and on the first frame draws. The last frame's own descendant is kept unless
-    another is better by more than rounding, so that nothing flickers between equals.
+    The others are tried where the bound leaves room: the relaxation, the best layer alone, on the
+    first frame draws, and layers without weight with the extreme that promises most. So no layer
+    alone is ever better, and none stays dead that need not. The last frame's own descendant is
+    kept unless another is better by more than rounding, so that nothing flickers between equals.
 
     Parameters
     ----------
@@ -102,11 +102,14 @@ def best(
         held = point[regions * layers :]
         starts.append(layer_relaxation.factors(model, relaxed, held))
         points, alone = layer_starts.singles(model, objective, held, alone, enough)
-        for single in points:
-            if before is None or layer_objective.value(model, objective, single) < value - enough:
-                starts.append(single)
+        values = [layer_objective.value(model, objective, single) for single in points]
+        starts.append(points[int(np.argmin(values))])
         for start in starts[1:]:
             other, place = descend(model, objective, start)
+            if other < value - enough:
+                value, point = other, place
+        if len(layer_starts.without_weight(model, point)):
+            other, place = descend(model, objective, layer_starts.revived(model, objective, point))
             if other < value - enough:
                 value, point = other, place
     if before is not None:
@@ -122,11 +125,10 @@ def _held(
     point: np.ndarray,
 ) -> tuple[float, np.ndarray]:
     """Give a layer without weight, which leaves its coefficients open, the last frame's."""
-    regions, layers, _ = model.sizes
-    for layer in range(layers):
-        if point[layer : regions * layers : layers].max() < UNSEEN:
-            held = np.where(model.group == regions + layer, before, point)
-            other = layer_objective.value(model, objective, held)
-            if other <= value + CLOSE_ENOUGH * model.scale:
-                value, point = other, held
+    regions = len(model.masks)
+    for layer in layer_starts.without_weight(model, point):
+        held = np.where(model.group == regions + layer, before, point)
+        other = layer_objective.value(model, objective, held)
+        if other <= value + CLOSE_ENOUGH * model.scale:
+            value, point = other, held
     return value, point

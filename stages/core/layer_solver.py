@@ -11,10 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stages.core import layer_amplitude, layer_model, layer_objective, layer_search
+from stages.core import layer_amplitude, layer_gap, layer_model, layer_objective, layer_search
 
 SOFTNESS = 1e-3
-GAP_WEIGHT = 100.0
 LIP_BIASES = ("gap", "mouth", "published")
 
 
@@ -25,15 +24,17 @@ class Settings(NamedTuple):
     ----------
     temporal : weight of the last frame, at the frames' own rate
     beyond : how far amplitudes may exceed one
+    lean : pull of the weights towards the layers that move what is under each mask
     lip_bias : what closeness g of the lips does. `published`: as above. `mouth`: ``1 - g`` stands
         only before what lies under the lips' mask, so that closed lips do not hold the rest of the
-        face still. `gap`: nothing gives way and nothing is pulled to /m/; the gap of the lips is
-        one more row of data, of weight g `GAP_WEIGHT`, see `layer_model.with_gap`
+        face still. `gap`: nothing gives way and nothing is drawn to /m/, but the character's gap
+        is one more row of data, see `layer_gap`
     """
 
     temporal: float = 0.05
     beyond: float = 0.0
-    lip_bias: str = "gap"
+    lip_bias: str = "published"
+    lean: float = 0.0
 
 
 class State(NamedTuple):
@@ -112,12 +113,12 @@ def _amplified(
     return layer_amplitude.follow(model, objective, point, slack + held, centre, settings.beyond)
 
 
-def check(model: layer_model.Model, settings: Settings, frames, closeness, apart) -> None:
+def check(model: layer_model.Model, settings: Settings, frames, closeness) -> None:
     """Refuse sequences that do not fit the model and numbers that mean nothing."""
-    shapes = np.shape(frames), np.shape(closeness), np.shape(apart)
-    if shapes[0][1:] != model.basis.shape[:1] or not shapes[1] == shapes[2] == (len(frames),):
+    if np.shape(frames)[1:] != model.basis.shape[:1] or np.shape(closeness) != (len(frames),):
         raise ValueError(
-            f"expected frames (T, {len(model.basis)}), closeness and apart (T,), got {shapes}"
+            f"expected frames (T, {len(model.basis)}) and closeness (T,), got {np.shape(frames)}"
+            f" and {np.shape(closeness)}"
         )
     if not len(frames):
         raise ValueError(f"expected at least one frame, got {np.shape(frames)}")
@@ -128,9 +129,6 @@ def check(model: layer_model.Model, settings: Settings, frames, closeness, apart
     near = np.asarray(closeness)
     if not ((near >= 0.0) & (near <= 1.0)).all():
         raise ValueError(f"closeness must be in 0..1, got {near.min()} to {near.max()}")
-    wide = np.asarray(apart)[near > 0.0]
-    if not ((wide >= 0.0) & (wide < np.inf)).all():
-        raise ValueError(f"apart must be at least 0 and finite, got {wide.min()} to {wide.max()}")
     if not len(model.lips) and near.any():
         raise ValueError(f"closeness of {near.max()} needs a lip mask, which the model has not")
 
@@ -141,17 +139,17 @@ def stated(
     frame: np.ndarray,
     quadratic: layer_model.Quadratic,
     closeness: float,
-    apart: float,
     before: np.ndarray | None,
 ) -> layer_objective.Objective:
     """Return a frame's objective, given its data term and the last frame's point, if any."""
     yielding = quadratic
     if closeness > 0.0 and settings.lip_bias == "gap":
-        quadratic = layer_model.with_gap(model, quadratic, apart, closeness * GAP_WEIGHT)
+        yielding = quadratic = layer_gap.closing(model, quadratic, closeness)
         closeness = 0.0
     elif closeness > 0.0 and settings.lip_bias == "mouth":
         yielding = layer_model.under_lips(model, frame)
-    return layer_objective.at(model, quadratic, yielding, closeness, settings.temporal, before)
+    found = layer_objective.at(model, quadratic, yielding, closeness, settings.temporal, before)
+    return layer_objective.leaning(model, found, settings.lean) if settings.lean else found
 
 
 def describe(
@@ -196,7 +194,6 @@ def solve_frame(
     frame: np.ndarray,
     closeness: float = 0.0,
     previous: State | None = None,
-    apart: float = 0.0,
 ) -> tuple[Solution, State | None]:
     """Solve one frame from the last; this is all that a live performance needs.
 
@@ -207,7 +204,6 @@ def solve_frame(
     frame : (D,) float array, less the neutral [balanced]; NaN = not observed
     closeness : float in 0..1, of the lips
     previous : State of the last frame; None = try several starts, nothing is held
-    apart : how far the lips stand further apart than closed ones; for the bias by their gap
 
     Returns
     -------
@@ -219,7 +215,7 @@ def solve_frame(
     ValueError
         if arrays do not fit the model or a number is out of range
     """
-    check(model, settings, np.asarray(frame)[None], np.array([closeness]), np.array([apart]))
+    check(model, settings, np.asarray(frame)[None], np.array([closeness]))
     quadratic = layer_model.project(model, frame)
     if quadratic is None:
         return nothing(model), previous
@@ -227,7 +223,7 @@ def solve_frame(
     if previous is not None:
         before = np.concatenate([previous.weights.ravel(), previous.coefficients])
         guide = previous.guide
-    objective = stated(model, settings, frame, quadratic, closeness, apart, before)
+    objective = stated(model, settings, frame, quadratic, closeness, before)
     found = layer_search.best(model, objective, before, guide)
     outside = layer_model.outside(model, quadratic, found.point)
     point, amplitudes = _amplified(model, settings, objective, found.point, previous)
@@ -241,7 +237,6 @@ def solve(
     settings: Settings,
     frames: np.ndarray,
     closeness: np.ndarray,
-    apart: np.ndarray | None = None,
 ) -> Solution:
     """Solve a sequence, each frame from the last: `solve_frame` over and over.
 
@@ -250,7 +245,6 @@ def solve(
     model, settings : see `solve_frame`
     frames : (T, D) float array, less the neutral [balanced]; NaN = not observed
     closeness : (T,) float array in 0..1, of the lips
-    apart : (T,) float array, how far the lips stand further apart than closed ones; None = not
 
     Returns
     -------
@@ -261,10 +255,9 @@ def solve(
     ValueError
         if arrays do not fit the model or each other, or a number is out of range
     """
-    apart = np.zeros(len(frames)) if apart is None else apart
-    check(model, settings, frames, closeness, apart)
+    check(model, settings, frames, closeness)
     solutions, state = [], None
-    for frame, near, wide in zip(frames, closeness, apart, strict=True):
-        solution, state = solve_frame(model, settings, frame, float(near), state, float(wide))
+    for frame, near in zip(frames, closeness, strict=True):
+        solution, state = solve_frame(model, settings, frame, float(near), state)
         solutions.append(solution)
     return stacked(solutions)

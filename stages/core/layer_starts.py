@@ -5,6 +5,8 @@ import numpy as np
 
 from stages.core import layer_kernel, layer_model, layer_objective
 
+UNSEEN = 1e-6
+
 
 def singles(
     model: layer_model.Model,
@@ -72,6 +74,38 @@ def _separate(gram, pairs, linear, layer, pull, target, point):
                 hessian[k, j] = 0.0
             gradient[k] += hessian[k, j] * point[j]
     return hessian, gradient
+
+
+def revived(
+    model: layer_model.Model, objective: layer_objective.Objective, point: np.ndarray
+) -> np.ndarray:
+    """Return a point with the layers that have no weight set to the extreme that promises most.
+
+    Under mask l a little weight on extreme k changes the data term by its slope there less the
+    mean slope of what has the weight now; the promise of k is the sum over masks of all that falls.
+    Coefficients of no weight cost nothing to set, and weight comes by descent.
+
+    Parameters
+    ----------
+    model, objective : see `layer_model` and `layer_objective`
+    point : (R * J + K,) float array
+    """
+    regions, layers, count = model.sizes
+    u = point[model.first] * point[model.second]
+    slope = (objective.quadratic.gram @ u - objective.quadratic.linear).reshape(regions, count)
+    mean = np.sum(slope * u.reshape(regions, count), axis=1, keepdims=True)
+    promise = np.maximum(mean - slope, 0.0).sum(axis=0)
+    changed = point.copy()
+    for layer in without_weight(model, point):
+        own = np.flatnonzero(model.layer == layer)
+        changed[regions * layers + own] = own == own[promise[own].argmax()]
+    return changed
+
+
+def without_weight(model: layer_model.Model, point: np.ndarray) -> np.ndarray:
+    """Return the layers that have no weight under any mask."""
+    regions, layers, _ = model.sizes
+    return np.flatnonzero(point[: regions * layers].reshape(regions, layers).max(axis=0) < UNSEEN)
 
 
 def draws(model: layer_model.Model, count: int, seed: int) -> list[np.ndarray]:

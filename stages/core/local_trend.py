@@ -7,7 +7,7 @@ model Kohn & Ansley 1987; Shumway & Stoffer 1982 for the smoother):
 
 discretised exactly, so that q / r does not depend on the frame rate. Of several q / r that of the
 greatest likelihood is taken, curve by curve: the one whose prediction of each next frame from those
-before is best. The Rauch-Tung-Striebel smoother then gives the level without delay.
+before is best. The Kalman smoother then gives the level without delay.
 """
 
 from collections.abc import Sequence

@@ -1,10 +1,13 @@
-"""Curves that are parts of a whole, as simplex weights are: none below zero, no greater sum."""
+"""Curves that are parts of a whole, as simplex weights are: none below zero, no greater sum.
+
+What was there before decides: a part that has been negative may be so again.
+"""
 
 import numpy as np
 
 
 def limited(values: np.ndarray, before: np.ndarray, whole: np.ndarray) -> np.ndarray:
-    """Keep the parts of each whole above zero, and their sum below the greatest there was.
+    """Keep parts from falling below zero or the least there was, their sum below the greatest.
 
     Parameters
     ----------
@@ -16,7 +19,7 @@ def limited(values: np.ndarray, before: np.ndarray, whole: np.ndarray) -> np.nda
     -------
     (T, K) float array
     """
-    made = np.maximum(values, 0.0)
+    made = np.maximum(values, np.fmin(np.fmin.reduce(before, axis=0), 0.0))
     for number in np.unique(whole):
         part = whole == number
         sums = before[:, part].sum(axis=1)

@@ -1,7 +1,7 @@
 """`dynamics.npz`: how an actor's takes move a rig's shapes, learnt from some of them.
 
 Arrays, over the K shapes: `durations` (D,) [s], `coefficients` (D, F, TERMS), `deviations` (N, K),
-`block` (N,), `low`, `high` (K,), as in `core.inbetween`; `jitter` (R, K), as in
+`block` (N,), `low`, `high` (K,), as in `core.between_poses`; `jitter` (R, K), as in
 `core.local_trend`. The header: `shapes`, K names `<mask>.<shape>`.
 """
 
@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from stages.core import inbetween
+from stages.core import between_poses
 from stages.files import errors, model
 
 KIND = "dynamics"
@@ -29,7 +29,7 @@ class Dynamics:
     """
 
     shapes: list[str]
-    motion: inbetween.Inbetween
+    motion: between_poses.BetweenPoses
     jitter: np.ndarray
 
 
@@ -53,6 +53,6 @@ def read(path: str | Path, shapes: Sequence[str], rig_path: str | Path) -> Dynam
     if header["shapes"] != list(shapes):
         message = f"was learnt for {len(header['shapes'])} shapes, not for the {len(shapes)} of"
         raise errors.InputError(path, f"{message} {rig_path}: run learn_dynamics again")
-    fields = {name: arrays[name] for name in inbetween.Inbetween._fields}
+    fields = {name: arrays[name] for name in between_poses.BetweenPoses._fields}
     fields["deviations"] = fields["deviations"].astype(float)
-    return Dynamics(list(shapes), inbetween.Inbetween(**fields), arrays["jitter"])
+    return Dynamics(list(shapes), between_poses.BetweenPoses(**fields), arrays["jitter"])

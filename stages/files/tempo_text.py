@@ -4,7 +4,7 @@ from fractions import Fraction
 
 from stages.files import errors
 
-# beyond these no one would know the performance again; finer steps no one would notice
+# beyond these no one would know the performance again; finer steps no one would hear
 SLOWEST, FASTEST = Fraction(1, 4), Fraction(4)
 FINEST = 10_000
 

@@ -1,3 +1,6 @@
+import ast
+import pathlib
+
 import hypothesis
 import numpy as np
 import pytest
@@ -6,6 +9,7 @@ from hypothesis import strategies as st
 
 from stages.core import layer_amplitude, layer_kernel
 
+CORE = pathlib.Path(layer_kernel.__file__).parent
 GROUP = np.repeat([0, 1, 2], (4, 3, 1))
 
 
@@ -87,3 +91,15 @@ def test_amplitudes_are_the_bounded_least_squares(seed):
     tall = np.concatenate([aim, np.sqrt(pull) * centre])
     truth = scipy.optimize.lsq_linear(wide, tall, (1.0, 1.0 + beyond), tol=1e-14).x
     np.testing.assert_allclose(got, truth, atol=1e-5)
+
+
+def test_no_kernel_calls_one_of_another_file():
+    # numba's cache looks at a function's own file only: it would not see the other one change
+    kernels = 0
+    for path in sorted(CORE.glob("layer_*.py")):
+        for node in ast.parse(path.read_text()).body:
+            if isinstance(node, ast.FunctionDef) and "njit" in ast.unparse(node.decorator_list[:1]):
+                names = {name.id for name in ast.walk(node) if isinstance(name, ast.Name)}
+                assert not {name for name in names if name.startswith("layer_")}
+                kernels += 1
+    assert kernels > 10

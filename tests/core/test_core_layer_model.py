@@ -60,3 +60,13 @@ def test_refuses_what_does_not_fit(change, words):
     given = {"basis": BASIS, "layer": LAYER, "masks": MASKS} | change
     with pytest.raises(ValueError, match=words):
         layer_model.build(**given)
+
+
+def test_outside_is_the_distance_from_the_simplices():
+    rng = np.random.default_rng(10)
+    frame = np.linalg.qr(rng.normal(size=(30, 4)))[0]
+    model = layer_model.build(frame[:, :3], np.zeros(3, int), np.ones((1, 30)))
+    beyond = frame @ [2.0, 0.0, 0.0, 5.0]
+    nearest = np.array([1.0, 1.0, 0.0, 0.0])
+    outside = layer_model.outside(model, layer_model.project(model, beyond), nearest)
+    assert outside == pytest.approx(1.0, abs=1e-5)

@@ -59,3 +59,21 @@ def test_factors_of_layers_are_found_again():
     again = layer_relaxation.factors(model, u, otherwise)
     np.testing.assert_allclose(again[:16], point[:16])
     np.testing.assert_array_equal(again[16:], otherwise[7:])
+
+
+def test_a_layer_without_weight_is_offered_its_best_extreme():
+    rng = np.random.default_rng(2)
+    model = built(rng, 3)
+    coefficients = np.array([1.0, 0, 0, 0, 0, 1, 0, 1, 0])
+    weights = np.tile([0.5, 0.5, 0.0], 3)
+    point = np.concatenate([weights, coefficients])
+    wanted = np.concatenate([np.tile([0.4, 0.4, 0.2], 3), coefficients])
+    wanted[-2:] = [0.0, 1.0]
+    u = (wanted[model.first] * wanted[model.second]).reshape(3, -1)
+    frame = np.sum(model.masks * (u @ model.basis.T), axis=0)
+    quadratic = layer_model.project(model, frame)
+    objective = layer_objective.at(model, quadratic, quadratic, 0.0, 0.0, None)
+    assert layer_starts.without_weight(model, point).tolist() == [2]
+    revived = layer_starts.revived(model, objective, point)
+    np.testing.assert_array_equal(revived[-2:], [0.0, 1.0])
+    np.testing.assert_array_equal(revived[:-2], point[:-2])

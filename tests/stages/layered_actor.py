@@ -166,6 +166,8 @@ class LayeredActor:
             "lip-sigma": 0,
             "temporal": 0,
             "beyond": 0,
+            "lean": 0,
+            "lip-bias": "published",
             "layers": self.folder / "layers.parquet",
         }
         stage.main(arguments(options, changed))

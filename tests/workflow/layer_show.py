@@ -51,7 +51,7 @@ POSES = {
 MOST_BLINK = 0.25  # of the shape, by the painted character's channels
 CHARACTER_COLUMNS = (
     "character method folder neutral masks painted_masks delivery_shapes channels unit up_axis "
-    "pivot face_unit rate temporal head head_gain follow_s tempo gap_filling outputs"
+    "pivot face_unit rate lip_sigma temporal head head_gain follow_s tempo gap_filling outputs"
 )
 
 
@@ -259,9 +259,36 @@ def build(folder):
         write_markers(footage / f"{shot}.csv", shot)
     write_plain(folder / "plain")
     write_painted(folder / "painted")
-    plain = ("plain", "neutral.obj", "masks.tsv", "", "", "", "cm", "y", "0 0 -2", "8", "film", "0")
+    plain = (
+        "plain",
+        "neutral.obj",
+        "masks.tsv",
+        "",
+        "",
+        "",
+        "cm",
+        "y",
+        "0 0 -2",
+        "8",
+        "film",
+        "0",
+        "0",
+    )
     painted = ("painted", "neutral.obj", "masks.ply", ",".join(MASKS), "shapes", "channels.tsv")
-    painted += ("cm", "y", "0 0 -1", "2", "15", "0.05", "apply", "1 0 1", "0.1", "2", "dynamics")
+    painted += (
+        "cm",
+        "y",
+        "0 0 -1",
+        "2",
+        "15",
+        "0.02",
+        "0.05",
+        "apply",
+        "1 0 1",
+        "0.1",
+        "2",
+        "dynamics",
+    )
     session = "session actor neutral_shot neutral_frame unit_markers marker_unit lip_points"
     tables = {
         "shots": [

@@ -74,6 +74,8 @@ rule assemble_simplices:
     threads: 1
     params:
         code=code_of("assemble_simplices"),
+        expression_table="config/expressions.tsv",
+        mask_table="config/actor_masks.tsv",
         shots=layer_shots,
         points=points_of,
         rows=expression_rows,
@@ -85,8 +87,8 @@ rule assemble_simplices:
     shell:
         "python -m stages.assemble_simplices"
         " --actor {wildcards.actor:q}"
-        " --expression-table config/expressions.tsv"
-        " --mask-table config/actor_masks.tsv"
+        " --expression-table {params.expression_table:q}"
+        " --mask-table {params.mask_table:q}"
         " --shots {params.shots:q}"
         " --expressions {input.expressions:q}"
         " --points {params.points:q}"
@@ -122,9 +124,10 @@ rule transfer_layers:
         lip_points=session_cell("lip_points"),
         lip_mask=character_cell("lip_mask"),
         lip_sigma=character_cell("lip_sigma"),
-        lips_yield=character_cell("lips_yield"),
+        lip_bias=character_cell("lip_bias"),
         temporal=character_cell("temporal"),
         beyond=character_cell("beyond"),
+        lean=character_cell("lean"),
     shell:
         "python -m stages.transfer_layers"
         " --simplices {input.simplices:q}"
@@ -132,9 +135,10 @@ rule transfer_layers:
         " --lip-points={params.lip_points:q}"
         " --lip-mask {params.lip_mask:q}"
         " --lip-sigma {params.lip_sigma}"
-        " --lips-yield {params.lips_yield:q}"
+        " --lip-bias {params.lip_bias:q}"
         " --temporal {params.temporal}"
         " --beyond {params.beyond}"
+        " --lean {params.lean}"
         " --layers {output.layers:q}"
         " 2> {log:q}"
 
@@ -159,9 +163,10 @@ rule transfer_layers_published:
         lip_points=session_cell("lip_points"),
         lip_mask=character_cell("lip_mask"),
         lip_sigma=character_cell("lip_sigma"),
-        lips_yield=character_cell("lips_yield"),
+        lip_bias=character_cell("lip_bias"),
         temporal=character_cell("temporal"),
         beyond=character_cell("beyond"),
+        lean=character_cell("lean"),
         seed=config["seed"],
     shell:
         "python -m stages.transfer_layers_published"
@@ -170,9 +175,10 @@ rule transfer_layers_published:
         " --lip-points={params.lip_points:q}"
         " --lip-mask {params.lip_mask:q}"
         " --lip-sigma {params.lip_sigma}"
-        " --lips-yield {params.lips_yield:q}"
+        " --lip-bias {params.lip_bias:q}"
         " --temporal {params.temporal}"
         " --beyond {params.beyond}"
+        " --lean {params.lean}"
         " --seed {params.seed}"
         " --layers {output.layers:q}"
         " 2> {log:q}"

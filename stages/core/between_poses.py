@@ -40,7 +40,7 @@ BLOCKS = 6
 Windows = list[tuple[int, int, int]]
 
 
-class Inbetween(NamedTuple):
+class BetweenPoses(NamedTuple):
     """Hold what was learnt of the motion between poses.
 
     Attributes
@@ -60,7 +60,7 @@ class Inbetween(NamedTuple):
     high: np.ndarray
 
 
-def learn(takes: Sequence[np.ndarray], rates: Sequence[float]) -> Inbetween:
+def learn(takes: Sequence[np.ndarray], rates: Sequence[float]) -> BetweenPoses:
     """Learn from takes.
 
     Parameters
@@ -90,13 +90,13 @@ def learn(takes: Sequence[np.ndarray], rates: Sequence[float]) -> Inbetween:
         high = np.nanmax([np.fmax.reduce(take, axis=0) for take in takes], axis=0)
     durations = np.array(list(learnt))
     nothing = np.zeros((0, takes[0].shape[1])), np.zeros(0, int)
-    made = Inbetween(durations, np.array(list(learnt.values())), *nothing, low, high)
+    made = BetweenPoses(durations, np.array(list(learnt.values())), *nothing, low, high)
     rows, block = _deviations(made, takes, rates)
     return made._replace(deviations=rows, block=block)
 
 
 def fill(
-    model: Inbetween,
+    model: BetweenPoses,
     values: np.ndarray,
     rate: float,
     low: np.ndarray | float = -np.inf,
@@ -155,7 +155,7 @@ def fill(
 
 
 def between(
-    model: Inbetween, values: np.ndarray, before: int, after: int, rate: float
+    model: BetweenPoses, values: np.ndarray, before: int, after: int, rate: float
 ) -> np.ndarray:
     """Return what the ends of a gap foretell of the frames in it.
 
@@ -182,7 +182,7 @@ def _straight(start: np.ndarray, end: np.ndarray, place: np.ndarray) -> np.ndarr
     return np.multiply.outer(1.0 - place, start) + np.multiply.outer(place, end)
 
 
-def _at(model: Inbetween, duration: float) -> np.ndarray:
+def _at(model: BetweenPoses, duration: float) -> np.ndarray:
     """Return the coefficients (F, TERMS) of a duration [s]."""
     wanted = np.clip(duration, model.durations[0], model.durations[-1])
     after = np.clip(np.searchsorted(model.durations, wanted), 1, max(len(model.durations) - 1, 1))
@@ -253,7 +253,7 @@ def _coefficients(
 
 
 def _deviations(
-    model: Inbetween, takes: Sequence[np.ndarray], rates: Sequence[float]
+    model: BetweenPoses, takes: Sequence[np.ndarray], rates: Sequence[float]
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return deviations (N, K) of hidden frames from what their ends foretell, and blocks (N,)."""
     rows, times = [np.zeros((0, len(model.low)))], [np.zeros(0)]

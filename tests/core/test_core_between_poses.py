@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from stages.core import gap_features, inbetween, whole_parts
+from stages.core import between_poses, gap_features, whole_parts
 
 RATE = 30.0
 
@@ -30,7 +30,7 @@ def holes(frames, length, step=70):
 
 @pytest.fixture(scope="module")
 def model():
-    return inbetween.learn([performed(0, 900), performed(1, 900)], [RATE, RATE])
+    return between_poses.learn([performed(0, 900), performed(1, 900)], [RATE, RATE])
 
 
 @pytest.mark.parametrize(("length", "share"), [(3, 0.5), (5, 0.6), (15, 0.85), (30, 0.98)])
@@ -39,7 +39,7 @@ def test_whole_frames_come_back_better_than_by_straight_lines(model, length, sha
     spoilt = truth.copy()
     for hole in holes(len(truth), length):
         spoilt[hole] = np.nan
-    made = inbetween.fill(model, spoilt, RATE)
+    made = between_poses.fill(model, spoilt, RATE)
     lost = np.isnan(spoilt)
     np.testing.assert_array_equal(made[~lost], truth[~lost])
     rows = np.arange(len(truth))
@@ -58,7 +58,7 @@ def test_channels_that_were_seen_tell_the_others(model):
     spoilt = truth.copy()
     for hole in holes(len(truth), 30):
         spoilt[hole, :2] = np.nan
-    made = inbetween.fill(model, spoilt, RATE)
+    made = between_poses.fill(model, spoilt, RATE)
     lost = np.isnan(spoilt)
     assert np.std((made - truth)[lost]) < 0.1 * np.std(truth[lost])
 
@@ -68,7 +68,7 @@ def test_nothing_jumps_at_the_ends(model):
     spoilt = truth.copy()
     for hole in holes(len(truth), 12):
         spoilt[hole, :4] = np.nan
-    made = inbetween.fill(model, spoilt, RATE)
+    made = between_poses.fill(model, spoilt, RATE)
     usual = np.abs(np.diff(truth, axis=0)).max()
     assert np.abs(np.diff(made, axis=0)).max() < 1.6 * usual
 
@@ -81,8 +81,8 @@ def test_the_rate_of_a_take_does_not_matter(model):
     for hole in holes(1500, 11, 140):
         slow[hole] = np.nan
         fast[4 * hole.start - 3 : 4 * hole.stop] = np.nan
-    made = inbetween.fill(model, slow, RATE)
-    finer = inbetween.fill(model, fast, 4 * RATE)
+    made = between_poses.fill(model, slow, RATE)
+    finer = between_poses.fill(model, fast, 4 * RATE)
     np.testing.assert_allclose(finer[::4], made, atol=1e-9)
 
 
@@ -91,19 +91,19 @@ def test_larger_motion_is_filled_alike(model):
     spoilt = performed(6, 300)
     spoilt[100:110] = np.nan
     wide = model._replace(low=model.low - 99, high=model.high + 99)
-    once = inbetween.fill(wide, spoilt, RATE)
-    np.testing.assert_allclose(inbetween.fill(wide, 2 * spoilt, RATE), 2 * once, atol=1e-9)
+    once = between_poses.fill(wide, spoilt, RATE)
+    np.testing.assert_allclose(between_poses.fill(wide, 2 * spoilt, RATE), 2 * once, atol=1e-9)
 
 
 def test_what_is_filled_stays_in_range(model):
     spoilt = performed(7, 400)
     for hole in holes(400, 20, 60):
         spoilt[hole] = np.nan
-    made = inbetween.fill(model, spoilt, RATE, 0.2, np.full(6, 0.3))
+    made = between_poses.fill(model, spoilt, RATE, 0.2, np.full(6, 0.3))
     lost = np.isnan(spoilt)
     assert made[lost].min() >= 0.2
     assert made[lost].max() <= 0.3
-    free = inbetween.fill(model, spoilt, RATE)
+    free = between_poses.fill(model, spoilt, RATE)
     low = np.minimum(model.low, np.nanmin(spoilt, axis=0))
     assert (free >= low - 1e-12).all()
 
@@ -114,7 +114,7 @@ def test_ends_are_held_and_neighbouring_gaps_filled(model):
     spoilt[:7], spoilt[-4:, 2] = np.nan, np.nan
     # gaps that leave one frame between them, and one that overlaps another channel's
     spoilt[50:60], spoilt[61:70], spoilt[100:120, 0], spoilt[110:130, 1] = [np.nan] * 4
-    made = inbetween.fill(model, spoilt, RATE)
+    made = between_poses.fill(model, spoilt, RATE)
     assert np.isfinite(made).all()
     np.testing.assert_array_equal(made[:7], np.repeat(truth[7:8], 7, axis=0))
     np.testing.assert_array_equal(made[-4:, 2], truth[[-5], 2].repeat(4))
@@ -125,22 +125,22 @@ def test_a_take_with_gaps_is_learnt_from():
     take = performed(0, 500)
     for hole in holes(len(take), 9, 150):
         take[hole, 3] = np.nan
-    model = inbetween.learn([take], [RATE])
+    model = between_poses.learn([take], [RATE])
     assert np.isfinite(model.coefficients).all()
     assert np.isfinite(model.deviations).all()
 
 
 def test_what_does_not_fit_is_refused(model):
     with pytest.raises(ValueError, match="too few stretches"):
-        inbetween.learn([performed(0, 20)], [RATE])
+        between_poses.learn([performed(0, 20)], [RATE])
     with pytest.raises(ValueError, match="do not belong together"):
-        inbetween.learn([performed(0), performed(0, channels=4)], [RATE, RATE])
+        between_poses.learn([performed(0), performed(0, channels=4)], [RATE, RATE])
     with pytest.raises(ValueError, match="6 channels learnt"):
-        inbetween.fill(model, np.zeros((9, 5)), RATE)
+        between_poses.fill(model, np.zeros((9, 5)), RATE)
     unseen = performed(0)
     unseen[:, 2] = np.nan
     with pytest.raises(ValueError, match="channel 2 of .* never observed"):
-        inbetween.fill(model, unseen, RATE)
+        between_poses.fill(model, unseen, RATE)
 
 
 def test_slopes_are_those_of_a_line():
@@ -160,3 +160,5 @@ def test_parts_of_a_whole_stay_parts():
     made = whole_parts.limited(values, before, np.array([0, 0, 1]))
     expected = [[0.8 / 1.2, 0.4 / 1.2, 0.5], [0, 0.3, 0.9], [0.5 / 1.1, 0.6 / 1.1, 0.7]]
     np.testing.assert_allclose(made, expected)
+    made = whole_parts.limited(values - 1, before - 1, np.array([0, 0, 1]))
+    np.testing.assert_array_equal(made >= np.nanmin(before - 1, axis=0), True)
