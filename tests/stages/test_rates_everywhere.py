@@ -17,7 +17,6 @@ from played_take import RATES, PlayedTake
 from bench import format_readers, formats
 from stages import (
     export_blender,
-    export_livelink,
     export_maya,
     import_curves,
     import_landmarks,
