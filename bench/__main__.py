@@ -2,8 +2,8 @@
 
 A folder with `labels.csv` and `reference/` tries the tracker; one with films and `.align` files
 sound sync and phones; one with `ict-facekit/`, `facecap-head/` and `livelink/` key shapes, weights,
-markers, head motion, regressions and filters; a folder of such folders tries all. Without data it
-takes about ten minutes, most of them for `reruns` and `large_rig`; with data about an hour.
+markers, head motion, regressions, filters, dynamics and layers; a folder of such folders tries all.
+Without data it takes about a quarter of an hour, with data more than one hour.
 """
 
 import argparse
@@ -20,6 +20,8 @@ RIGS = (
     "rbf_trial",
     "filter_trial",
     "key_reduction_trial",
+    "dynamics_trial",
+    "layer_trial",
 )
 SPEECH = ("sync_trial", "phone_trial")
 
@@ -30,7 +32,8 @@ def trials(show: Path, data: Path | None) -> list[tuple[str, list[str]]]:
         takes = sorted(str(path.parent) for path in show.glob("results/takes/*/*/mesh.glb"))
         example = [("example_truth", [str(show)]), ("rig_truth", [str(show)])]
         example += [("glb_against_exr", takes), ("large_bake", []), ("large_rig", [])]
-        return [*example, ("reruns", [str(show)])]
+        example += [("layer_trial", []), ("layer_balance", [str(show)])]
+        return [*example, ("layer_example", [str(show)]), ("reruns", [str(show)])]
     found = []
     for folder in (data, *sorted(path for path in data.iterdir() if path.is_dir())):
         option = ["--data", str(folder)]

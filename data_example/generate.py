@@ -17,6 +17,7 @@ from data_example.generator import (
     labels,
     landmarks,
     params,
+    play_files,
     render,
     sculpting,
     shots,
@@ -25,7 +26,7 @@ from data_example.generator import (
     truth,
 )
 
-PIECES = ("films", "labels", "characters", "capture")
+PIECES = ("films", "labels", "characters", "capture", "play")
 
 
 def _render(take, seed, hidden):
@@ -96,6 +97,8 @@ def main(argv=None):
         sculpting.write_all(arguments.folder / "characters")
     if arguments.only in (None, "capture"):
         capture.write_all(arguments.folder)
+    if arguments.only in (None, "play"):
+        play_files.write_all(arguments.folder)
     if arguments.only in (None, "films"):
         make_films(arguments.folder, arguments.shots)
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from stages import cli
-from stages.core import local_shapes, masks
-from stages.files import errors, key_shapes, mask_table, rig, sculpts
+from stages.core import local_shapes
+from stages.files import character_masks, errors, key_shapes, rig, sculpts
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -29,26 +29,6 @@ def build_parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--rig", required=True, help="rig.npz to write")
     return parser
-
-
-def _masks(path: str, neutral: sculpts.Pose) -> tuple[list[str], np.ndarray]:
-    """Return the regions' names and their masks over the vertices."""
-    points = neutral.coordinates
-    table = mask_table.read(path, neutral.names, points.shape[1])
-    values = table.given
-    if table.rest is not None:
-        values = masks.by_ramps(points, len(table.regions), table.rest, table.ramps, table.listed)
-    fault = masks.first_fault(values)
-    if fault:
-        vertex, what = fault
-        held = [
-            f"{region} {weight:g}"
-            for region, weight in zip(table.regions, values[:, vertex], strict=True)
-            if weight
-        ]
-        message = f"vertex {neutral.names[vertex]}: {what} ({', '.join(held) or 'not listed'})"
-        raise errors.InputError(path, message + ": correct its rows")
-    return table.regions, masks.normalised(values)
 
 
 def _wanted(
@@ -86,7 +66,7 @@ def main(argv: Sequence[str]) -> None:
     options = build_parser().parse_args(argv)
     pivot = rig.pivot("--pivot", options.pivot)
     neutral = sculpts.read_neutral(options.neutral)
-    regions, values = _masks(options.masks, neutral)
+    regions, values = character_masks.from_table(options.masks, neutral)
     wanted = _wanted(options, regions, values)
     _refuse_gaps(options, wanted)
     deltas = local_shapes.gather(

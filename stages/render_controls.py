@@ -8,7 +8,7 @@ import numpy as np
 
 from stages import cli
 from stages.core import curve_panel, preview
-from stages.files import series, take_source
+from stages.files import series, take_source, tempo_text
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -25,6 +25,9 @@ def build_parser() -> argparse.ArgumentParser:
     parser.add_argument("--controls", required=True, help="controls.parquet of the take")
     parser.add_argument("--shot", required=True, help="name of the shot, for the caption")
     parser.add_argument("--character", required=True, help="its name, for the caption")
+    parser.add_argument(
+        "--tempo", default="1", help="how many seconds of the performance pass in one of the take"
+    )
     parser.add_argument("--preview", required=True, help="preview.mp4 to write")
     return parser
 
@@ -33,6 +36,7 @@ def main(argv: Sequence[str]) -> None:
     """Render picture by picture."""
     cv2.setNumThreads(1)
     options = build_parser().parse_args(argv)
+    tempo = tempo_text.read("--tempo", options.tempo)
     source = take_source.read(
         options.video,
         options.tracked,
@@ -55,7 +59,8 @@ def main(argv: Sequence[str]) -> None:
         return curve_panel.draw_playhead(lanes, values, row)
 
     title = f"{options.shot}, {options.character}"
-    take_source.write(options.preview, source, title, curves_at)
+    title += f", tempo {options.tempo}" if tempo != 1 else ""
+    take_source.write(options.preview, take_source.at_tempo(source, tempo), title, curves_at)
 
 
 if __name__ == "__main__":

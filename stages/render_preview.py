@@ -8,7 +8,7 @@ import numpy as np
 
 from stages import cli
 from stages.core import head_transform, polygons, portrait, preview
-from stages.files import errors, exr, rig, take_source
+from stages.files import errors, exr, rig, take_source, tempo_text
 
 # the camera is fixed by so many frames of the take, without this share at either end
 SAMPLED_FRAMES = 100
@@ -31,6 +31,9 @@ def build_parser() -> argparse.ArgumentParser:
     parser.add_argument("--rig", required=True, help="rig.npz of the character, a mesh")
     parser.add_argument("--shot", required=True, help="name of the shot, for the caption")
     parser.add_argument("--character", required=True, help="its name, for the caption")
+    parser.add_argument(
+        "--tempo", default="1", help="how many seconds of the performance pass in one of the take"
+    )
     parser.add_argument("--preview", required=True, help="preview.mp4 to write")
     return parser
 
@@ -59,6 +62,7 @@ def main(argv: Sequence[str]) -> None:
     """Render picture by picture."""
     cv2.setNumThreads(1)
     options = build_parser().parse_args(argv)
+    tempo = tempo_text.read("--tempo", options.tempo)
     source = take_source.read(
         options.video,
         options.tracked,
@@ -80,7 +84,8 @@ def main(argv: Sequence[str]) -> None:
         return paint(baked.frame(baked.nearest(time_s)))
 
     title = f"{options.shot}, {options.character}"
-    take_source.write(options.preview, source, title, character_at)
+    title += f", tempo {options.tempo}" if tempo != 1 else ""
+    take_source.write(options.preview, take_source.at_tempo(source, tempo), title, character_at)
 
 
 if __name__ == "__main__":

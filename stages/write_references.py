@@ -139,7 +139,8 @@ def _groups(
             card = {name: row[name] for name in ("shot", "frame", "tuned_by")}
             card["picture"] = pictures.get(key, "")
             card["reason"] = _reason(row)
-            card["dots"] = _dots(points[row["shot"]], row["frame"])
+            driving = points[row["shot"]]
+            card["dots"] = outline.dots(driving.points[row["frame"]], driving.neutral)
             card["weights"] = _weights(shapes, starts.get(key))
             cards.append(card)
         if cards:
@@ -152,21 +153,6 @@ def _reason(row: dict) -> str:
     words = {"viseme": f"viseme {row['viseme']}", "extreme": "extreme", "coverage": "coverage"}
     parts = [words[row["source"]], row["emotion"], f"{row['time_s']:.2f} s"]
     return ", ".join(part for part in parts if part)
-
-
-def _dots(driving: driving_points.DrivingPoints, frame: int) -> list[dict]:
-    """Return where the points lie and where the neutral has them."""
-    pairs = zip(driving.points[frame, :, :2], driving.neutral[:, :2], strict=True)
-    return [
-        {
-            "x": f"{place[0]:.4f}",
-            "y": f"{place[1]:.4f}",
-            "from_x": f"{rest[0]:.4f}",
-            "from_y": f"{rest[1]:.4f}",
-        }
-        for place, rest in pairs
-        if np.isfinite(place).all()
-    ]
 
 
 def _weights(shapes: Sequence[str], weights: np.ndarray | None) -> list[dict]:

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from stages import cli
-from stages.files import proposal_table, report_facts, web_page
+from stages.files import layer_facts, proposal_table, report_facts, web_page
 
 DELIVERIES = (
     "mesh.glb",
@@ -28,6 +28,10 @@ DELIVERIES = (
     "maya.anim",
     "livelink.csv",
     "keys.csv",
+    "layers/emotion.csv",
+    "layers/speech.csv",
+    "layers/blink.csv",
+    "delivery.csv",
     "controls.csv",
     "weights.csv",
 )
@@ -35,6 +39,7 @@ PROPOSALS = 8
 # no take waits for these
 ASIDE = (
     "propose_labels",
+    "propose_expressions",
     "write_brief",
     "check_sculpts",
     "align_phones",
@@ -65,12 +70,18 @@ def main(argv: Sequence[str]) -> None:
     arguments = build_parser().parse_args(argv)
     places = {shot: (actor, session) for actor, session, shot in map(_split, arguments.shots)}
     takes = [_take(arguments, place, places) for place in arguments.takes]
+    layered = [
+        place
+        for place in arguments.takes
+        if (arguments.results / "takes" / place / "layers.parquet").is_file()
+    ]
     context = {
         "takes": takes,
         "done": sum(not take["failure"] for take in takes),
         "shots": [_shot(arguments, shot, places) for shot in places],
         "asides": _asides(arguments, places),
         "rigs": _rigs(arguments, places),
+        "layers": [_layers(arguments.results, place, places) for place in layered],
         "actors": _actors(arguments.results, sorted({actor for actor, _ in places.values()})),
         "proposals": _proposals(arguments.results, sorted({s for _, s in places.values()})),
     }
@@ -174,12 +185,25 @@ def _rigs(arguments: argparse.Namespace, places: dict) -> list[dict]:
     return found
 
 
+def _layers(results: Path, place: str, places: dict) -> dict:
+    """Return what the page says of the layers of a take."""
+    shot, character = _split(place)
+    cast = results / "cast" / places[shot][0] / character
+    shared = layer_facts.extremes(cast) if (cast / "simplices.tsv").is_file() else "-"
+    facts = {"shot": shot, "character": character, "extremes": shared}
+    return facts | layer_facts.take(results / "takes" / place)
+
+
 def _actors(results: Path, actors: Sequence[str]) -> list[dict]:
-    """Return the actors that have a brief."""
+    """Return the pages of each actor that exist."""
+    pages = ("brief", "expressions")
     return [
-        {"name": actor, "brief": f"../actors/{actor}/brief/index.html"}
+        {"name": actor}
+        | {
+            page: f"../{place}" if (results / place).is_file() else ""
+            for page, place in ((p, f"actors/{actor}/{p}/index.html") for p in pages)
+        }
         for actor in actors
-        if (results / "actors" / actor / "brief" / "index.html").is_file()
     ]
 
 

@@ -9,6 +9,10 @@ import cv2
 from bench.figures import (
     example,
     key_shape_figure,
+    layer_error_figure,
+    layer_mask_figure,
+    layer_take,
+    layer_timeline_figure,
     lip_figures,
     lip_trial,
     marker_figure,
@@ -34,7 +38,7 @@ def build_parser() -> argparse.ArgumentParser:
 
 
 def main(argv: Sequence[str]) -> None:
-    """Make figures 4, 5, 6 and 8 of the first paper, and figure 6 of the second."""
+    """Make figures 4, 5, 6 and 8 of the first paper, 6 of the second, 6, 7 and 8 of the third."""
     cv2.setNumThreads(1)
     arguments = build_parser().parse_args(argv)
     show, folder = arguments.show, arguments.figures
@@ -48,6 +52,9 @@ def main(argv: Sequence[str]) -> None:
     retarget_figure.draw(show, folder / "figure_8a.png")
     own_figure.draw(show, folder / "figure_8b.png")
     marker_figure.draw(show, folder / "markers_figure_6.png")
+    layer_timeline_figure.draw(show, folder / "layers_figure_6.png")
+    layer_mask_figure.draw(show, folder / "layers_figure_7.png")
+    layer_error_figure.draw(show, folder / "layers_figure_8.png")
 
 
 def _check_made(show: Path) -> None:
@@ -57,6 +64,9 @@ def _check_made(show: Path) -> None:
     needed += [example.of_take(show, TAKE, name, "mesh.json") for name in portraits.CHARACTERS]
     needed += [example.rig(show, rig_methods.CHARACTER, rig_methods.ACTOR)]
     needed += [example.of_shot(show, rig_methods.SHOT, "expression.parquet")]
+    needed += layer_take.paths(show)
+    shots = (layer_take.SHOT, *layer_error_figure.OTHERS)
+    needed += [example.of_shot(show, shot, "expression.parquet") for shot in shots]
     for path in needed:
         if not path.exists():
             raise errors.InputError(path, "is missing: run the example show first, by `make run`")

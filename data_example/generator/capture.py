@@ -1,5 +1,7 @@
 """Make the marker takes: C3D, film with the markers on the face, two sounds, words and phones."""
 
+from typing import NamedTuple
+
 import cv2
 import numpy as np
 from scipy import signal
@@ -37,6 +39,24 @@ CRF, SOUND_BITS = "27", 40000
 BEHIND_MM = 3.0
 
 
+class Played(NamedTuple):
+    """A take at some times.
+
+    expression : (T, N) float array, columns params.NAMES
+    quaternion : (T, 4) float array, head rotation x, y, z, w
+    translation : (T, 3) float array [mm]
+    """
+
+    expression: np.ndarray
+    quaternion: np.ndarray
+    translation: np.ndarray
+
+
+def play_at(take, times):
+    """Return a take at times on the clock of the notes."""
+    return Played(marker_takes.expression(take, times), *marker_takes.head(take, times))
+
+
 def true_markers(body, glued, table):
     """Return the markers without head motion, (T, 102, 3) [mm], and their normals."""
     pairs = [markers.still(body, glued, params.from_row(row)) for row in table]
@@ -64,15 +84,13 @@ def in_system(points):
     return np.stack([points[..., 0], -points[..., 2], points[..., 1]], axis=-1) + SEAT
 
 
-def write_markers(path, take, body, glued, seed):
-    """Write the C3D of a take."""
-    times = marker_takes.marker_times(take)
-    quaternion, translation = marker_takes.head(take, times)
-    turns = transform.Rotation.from_quat(quaternion).as_matrix()
-    points, _ = true_markers(body, glued, marker_takes.expression(take, times))
-    seen = measured(take, markers.moved(points, turns, translation), seed)
+def write_markers(path, take, played, body, glued, rate, seed):
+    """Write the C3D of a take that is played at the markers' rate."""
+    turns = transform.Rotation.from_quat(played.quaternion).as_matrix()
+    points, _ = true_markers(body, glued, played.expression)
+    seen = measured(take, markers.moved(points, turns, played.translation), seed)
     names = [markers.PREFIX + name for name in markers.NAMES]
-    c3d.write(path, names, in_system(seen), marker_takes.RATE, STEP_MM, "")
+    c3d.write(path, names, in_system(seen), rate, STEP_MM, "")
 
 
 def _dots(picture, depth, world, normal):
@@ -97,16 +115,14 @@ def _dots(picture, depth, world, normal):
     return result
 
 
-def _pictures(take, glued, seed):
-    """Yield the 8-bit pictures of the film."""
+def pictures(played, glued, seed):
+    """Yield the 8-bit pictures of a film that is played at its rate."""
     woman = mia.build()
     atlas = mia.paint(woman)
-    times = np.arange(round(take.duration_s * shots.RATE)) / shots.RATE
-    table = marker_takes.expression(take, times)
-    quaternion, translation = marker_takes.head(take, times)
-    turns = transform.Rotation.from_quat(quaternion).as_matrix()
+    turns = transform.Rotation.from_quat(played.quaternion).as_matrix()
+    translation = played.translation
     empty = render.backdrop()
-    for frame, row in enumerate(table):
+    for frame, row in enumerate(played.expression):
         p = params.from_row(row)
         still = actor.pose(woman, p)
         ambient = actor.shade(woman, still, p)
@@ -119,10 +135,15 @@ def _pictures(take, glued, seed):
         yield film.noisy(small, seed, frame)
 
 
-def film_sound(take, seed=71):
-    """Return the camera's sound: a bright microphone in a live room, (S,) at sound.RATE."""
+def film_sound(dry, seed=71):
+    """Return the camera's sound: a bright microphone in a live room, (S,) at sound.RATE.
+
+    Parameters
+    ----------
+    dry : (N,) float array, the voice at spoken.RATE
+    seed : int
+    """
     rng = np.random.default_rng(seed)
-    dry = _voice(0.0, take.duration_s)
     up = signal.resample_poly(dry, sound.RATE, spoken.RATE)
     bright = signal.sosfilt(signal.butter(2, 140, "high", fs=sound.RATE, output="sos"), up)
     bright = bright + 0.5 * signal.sosfilt(
@@ -173,10 +194,14 @@ def write_all(folder, names=tuple(marker_takes.TAKES)):
         if name not in names:
             continue
         take = direct()
-        write_markers(here / f"{name}.c3d", take, body, glued, 60 + seed)
+        played = play_at(take, marker_takes.marker_times(take))
+        path = here / f"{name}.c3d"
+        write_markers(path, take, played, body, glued, marker_takes.RATE, 60 + seed)
         truth.save(folder / "truth" / f"{name}.npz", marker_truth.of_take(name, body, glued))
         if take.duration_s:
             write_words(here, name, take)
             sound_file.write(here / f"{name}.flac", system_sound(take), spoken.RATE)
-            pictures = _pictures(take, glued, 80 + seed)
-            film.write(here / f"{name}.mp4", pictures, film_sound(take), CRF, SOUND_BITS)
+            shown = play_at(take, np.arange(round(take.duration_s * shots.RATE)) / shots.RATE)
+            heard = film_sound(_voice(0.0, take.duration_s))
+            path = here / f"{name}.mp4"
+            film.write(path, pictures(shown, glued, 80 + seed), heard, CRF, SOUND_BITS)

@@ -1,9 +1,18 @@
-"""Write the clay head: neutral and shapes as binary PLY, virtual markers, channels, tuned pairs."""
+"""Write the clay head: neutral and shapes as PLY, virtual markers, channels, pairs, poses."""
 
 import numpy as np
 from scipy import interpolate, optimize
 
-from data_example.generator import clay, clay_rig, clay_shapes, markers, tuned_pairs
+from data_example.generator import (
+    clay,
+    clay_poses,
+    clay_rig,
+    clay_shapes,
+    extreme_files,
+    markers,
+    ply_writer,
+    tuned_pairs,
+)
 
 COMMENT = "clay"
 # the same places on Ada's face and on the clay head, in the frontal plane [mm]; left side
@@ -32,21 +41,8 @@ eyeLookDownRight 1 0 0 1 0.5 -
 
 
 def ply(rig, vertices, coloured):
-    """Return a mesh as the bytes of a binary PLY."""
-    head = ["ply", "format binary_little_endian 1.0", f"comment {COMMENT}"]
-    head += [f"element vertex {len(vertices)}", *(f"property float {axis}" for axis in "xyz")]
-    kinds = [("place", "<f4", (3,))]
-    if coloured:
-        head += [f"property uchar {tone}" for tone in ("red", "green", "blue")]
-        kinds.append(("tone", "u1", (3,)))
-    head += [f"element face {len(rig.faces)}", "property list uchar ushort vertex_indices"]
-    rows = np.zeros(len(vertices), np.dtype(kinds))
-    rows["place"] = vertices
-    if coloured:
-        rows["tone"] = np.round(rig.colours * 255)
-    faces = np.zeros(len(rig.faces), np.dtype([("count", "u1"), ("corners", "<u2", (3,))]))
-    faces["count"], faces["corners"] = 3, rig.faces
-    return ("\n".join([*head, "end_header"]) + "\n").encode() + rows.tobytes() + faces.tobytes()
+    """Return a mesh of the clay head as the bytes of a binary PLY."""
+    return ply_writer.data(COMMENT, vertices, rig.faces, rig.colours if coloured else None)
 
 
 def virtual_markers(rig):
@@ -102,7 +98,19 @@ def write_all(folder):
     header = ("shape", "gain", "offset", "low", "high", "smoothing", "keep")
     cells = [line.replace(" -", " ").split(" ") for line in CHANNELS.strip().splitlines()]
     (folder / "channels.tsv").write_text(_table([header, *cells]), encoding="utf-8")
+    _write_poses(rig, folder)
     for animator, pairs in tuned_pairs.by_animator().items():
         header = ("shot", "frame", *clay_shapes.NAMES)
         text = _table([header, *pairs])
         (folder / "pairs" / f"{animator}.tsv").write_text(text, encoding="utf-8")
+
+
+def _write_poses(rig, folder):
+    """Write the masks, and the extremes of the layers as tables of shapes."""
+    (folder / "poses").mkdir(exist_ok=True)
+    masks = extreme_files.masks_table(clay_poses.masks(rig))
+    (folder / "masks.tsv").write_text(masks, encoding="utf-8")
+    for name, pose in clay_poses.all_poses().items():
+        lines = ["name,value", *(f"{shape},{weight:g}" for shape, weight in pose.items())]
+        path = folder / "poses" / f"{name}.csv"
+        path.write_text("\n".join(lines) + "\n", encoding="utf-8")

@@ -28,6 +28,7 @@ class Clay(NamedTuple):
     faces : (F, 3) int array
     colours : (V, 3) float array, 0..1
     skin : int, number of the skin's vertices, which come first
+    slices : dict, piece -> slice of its vertices
     """
 
     neutral: np.ndarray
@@ -35,6 +36,7 @@ class Clay(NamedTuple):
     faces: np.ndarray
     colours: np.ndarray
     skin: int
+    slices: dict
 
 
 def _ear(out):
@@ -133,5 +135,10 @@ def build():
         for name, delta in clay_shapes.deltas(rest).items()
     }
     return Clay(
-        neutral, shapes, _triangles(parts.faces), np.concatenate(parts.colours), len(rest.skin)
+        neutral,
+        shapes,
+        _triangles(parts.faces),
+        np.concatenate(parts.colours),
+        len(rest.skin),
+        parts.slices,
     )

@@ -20,13 +20,14 @@ def _fractions(kind, count, rng):
     return loose
 
 
-def frame_labels(dense, rng):
+def frame_labels(dense, rng, noise):
     """Return the labels of one frame.
 
     Parameters
     ----------
     dense : dict name -> (N, 2) float array, true contours [px]
     rng : numpy generator
+    noise : float, how far the points are off [px]
 
     Returns
     -------
@@ -36,7 +37,7 @@ def frame_labels(dense, rng):
     for contour, (kind, _, count) in contours.POINT_SET.items():
         at, back = _fractions(kind, count, rng), _fractions(kind, count, rng)
         points = contours.sample(kind, dense[contour], at, back)
-        points = points + NOISE_PX * rng.standard_normal(points.shape)
+        points = points + noise * rng.standard_normal(points.shape)
         for number, (x, y) in enumerate(points):
             name = contour if kind == "point" else f"{contour}_{number:02d}"
             corner = "1" if kind == "closed" and number % (count // 2) == 0 else ""
@@ -44,15 +45,30 @@ def frame_labels(dense, rng):
     return rows
 
 
-def of_take(take, frames, neutral_brows, seed=31):
-    """Return the labels of a take's frames as the text of a labels file."""
+def table(drawn, seed, noise=NOISE_PX):
+    """Return labels as the text of a labels file.
+
+    Parameters
+    ----------
+    drawn : iterable of (frame, dict name -> (N, 2) float array, true contours [px])
+    seed : int
+    noise : float, how far the points are off [px]
+    """
     rng = np.random.default_rng(seed)
     lines = ["frame,point,x_px,y_px,corner"]
+    for frame, dense in drawn:
+        for name, x, y, corner in frame_labels(dense, rng, noise):
+            lines.append(f"{frame},{name},{x:.2f},{y:.2f},{corner}")
+    return "\n".join(lines) + "\n"
+
+
+def of_take(take, frames, neutral_brows, seed=31):
+    """Return the labels of a take's frames as the text of a labels file."""
+    drawn = []
     for frame in frames:
         p = params.from_row(take.expression[frame])
         turn = transform.Rotation.from_quat(take.quaternion[frame]).as_matrix()
         dense = landmarks.in_space(p, neutral_brows)
-        picture = landmarks.in_picture(landmarks.moved(dense, turn, take.translation[frame]))
-        for name, x, y, corner in frame_labels(picture, rng):
-            lines.append(f"{frame},{name},{x:.2f},{y:.2f},{corner}")
-    return "\n".join(lines) + "\n"
+        world = landmarks.moved(dense, turn, take.translation[frame])
+        drawn.append((frame, landmarks.in_picture(world)))
+    return table(drawn, seed)

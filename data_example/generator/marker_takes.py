@@ -88,7 +88,7 @@ def marker_times(take):
     return np.arange(take.frames) / RATE + take.offset_s
 
 
-def _ease(knots, times):
+def ease(knots, times):
     """Return smooth tracks through `time:value,value` knots without overshoot, (T, C)."""
     table = np.array([k.replace(":", ",").split(",") for k in knots.split()], float)
     at = np.clip(times, table[0, 0], table[-1, 0])
@@ -103,7 +103,7 @@ def _pose(text):
     return row
 
 
-def _blink(times, start):
+def blink(times, start):
     """Return a blink that closes in 80 ms, rests for 40 and opens in 160, (T,)."""
     shut = fields.smoothstep(start, start + 0.08, times)
     return shut * (1 - fields.smoothstep(start + 0.12, start + 0.28, times))
@@ -124,13 +124,13 @@ def expression(take, times):
         table[:, params.NAMES.index(name)] += talking * track
     # rounded and closed lips leave less room for a smile
     room = 1 - 0.5 * table[:, params.NAMES.index("pucker")]
-    for strength, pose in zip(_ease(take.moods, times).T, marker_cues.MOODS.values(), strict=True):
+    for strength, pose in zip(ease(take.moods, times).T, marker_cues.MOODS.values(), strict=True):
         table += np.outer(strength * room, _pose(pose))
-    table[:, params.NAMES.index("gaze_y")] += _ease(take.gaze, times)[:, 0]
+    table[:, params.NAMES.index("gaze_y")] += ease(take.gaze, times)[:, 0]
     for start in take.blinks:
         for name in ("blink_l", "blink_r"):
             column = params.NAMES.index(name)
-            table[:, column] = np.maximum(table[:, column], _blink(times, start))
+            table[:, column] = np.maximum(table[:, column], blink(times, start))
     return params.limited(table)
 
 
@@ -144,7 +144,7 @@ def _talking(phones, times):
 
 def head(take, times):
     """Return head motion at times: quaternions (T, 4) x, y, z, w and translations (T, 3) [mm]."""
-    motion = _ease(take.head, times)
+    motion = ease(take.head, times)
     alive = fields.smoothstep(0.3, 0.9, times)[:, None]
     waves = [
         [np.sin(2 * np.pi * f * times + k + 1.7 * axis) for f, k in ((0.53, 0.3), (1.31, 2.1))]

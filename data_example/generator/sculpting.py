@@ -3,14 +3,18 @@
 import numpy as np
 
 from data_example.generator import (
+    cassette,
     clay_files,
     drawing,
+    extreme_files,
+    globe,
     human_mesh,
     params,
     puppet,
     radio,
     selection,
     shots,
+    tortoise_files,
 )
 
 ERROR = 0.10
@@ -109,4 +113,8 @@ def write_all(folder, seed=41):
         _write(folder / "puppet" / "sculpts" / region / name, _csv(made))
     rows.append(("puppet", "neutral.csv", PUPPET_ROW))
     clay_files.write_all(folder / "clay")
+    for played in (globe.build(), cassette.build()):
+        extreme_files.write(folder / played.name, played)
+        rows.append((played.name, "neutral.ply", played.row))
+    tortoise_files.write_all(folder / "tortoise")
     return rows

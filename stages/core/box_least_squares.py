@@ -36,9 +36,6 @@ def reduce(matrix, targets):
 def solve(matrix, targets, lower, upper):
     """Minimise ``|A w_t - x_t|^2`` subject to ``lower <= w_t <= upper`` for every frame t.
 
-    With few columns all frames are solved together. With many, each frame starts from the
-    active set of the frame before it, which for a film is within a few exchanges of the answer.
-
     Parameters
     ----------
     matrix : (D, K) float array
@@ -64,13 +61,32 @@ def solve(matrix, targets, lower, upper):
     R, z, _ = reduce(matrix, targets)
     if np.isneginf(lower).all() and np.isposinf(upper).all():
         return np.linalg.lstsq(R, z.T, rcond=None)[0].T
-    gram, right = R.T @ R, z @ R
-    weights = np.full((len(targets), len(lower)), np.nan)
+    return solve_gram_frames(R.T @ R, z @ R, lower, upper)
+
+
+def solve_gram_frames(gram, linear, lower, upper):
+    """Minimise ``w_t' G w_t / 2 - b_t' w_t`` subject to ``lower <= w_t <= upper`` for all frames.
+
+    With few columns all frames are solved together. With many, each frame starts from the
+    active set of the frame before it, which for a film is within a few exchanges of the answer.
+
+    Parameters
+    ----------
+    gram : (K, K) float array
+        Positive semi-definite.
+    linear : (T, K) float array
+    lower, upper : (K,) float array
+
+    Returns
+    -------
+    (T, K) float array
+    """
+    weights = np.full(linear.shape, np.nan)
     if len(lower) <= _FEW:
-        weights = _solve_together(gram, right, lower, upper)
+        weights = _solve_together(gram, linear, lower, upper)
     start = np.clip(np.zeros(len(lower)), lower, upper)
     for t in np.flatnonzero(np.isnan(weights).any(axis=1)):
-        weights[t] = start = solve_gram(gram, right[t], lower, upper, start)
+        weights[t] = start = solve_gram(gram, linear[t], lower, upper, start)
     return weights
 
 

@@ -3,7 +3,7 @@
 One encoder thread and no dates, so that the same pictures give the same bytes.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from fractions import Fraction
 from pathlib import Path
 
@@ -11,16 +11,15 @@ import av
 import cv2
 import numpy as np
 
-from stages.files import atomic, errors
+from stages.files import atomic, sound_pieces
 
 CLOCK_HZ = 90000
 VIDEO_OPTIONS = {"preset": "superfast", "crf": "22", "threads": "1"}
 CONTAINER_OPTIONS = {"fflags": "+bitexact", "movflags": "+faststart"}
 SOUND_BITS_PER_S = 128000
-# what AAC can hold; other sound is brought to the last
-SOUND_RATES = (8000, 11025, 12000, 16000, 22050, 24000, 32000, 44100, 48000)
 # sound is written this far ahead of the pictures, so that the muxer holds little back
 LEAD_S = 0.5
+NORMAL = Fraction(1)
 
 
 def write(
@@ -30,6 +29,7 @@ def write(
     rate: Fraction,
     sound_of: str | Path | None = None,
     sound_start_s: float = 0.0,
+    tempo: Fraction = NORMAL,
 ) -> None:
     """Write a film.
 
@@ -41,6 +41,7 @@ def write(
     rate : nominal frames per second
     sound_of : film whose sound to take; None for a silent film
     sound_start_s : time in that film, from its first picture, that is 0 in this one [s]
+    tempo : how many seconds of that sound pass in one of this film, at the sound's own pitch
 
     Raises
     ------
@@ -55,7 +56,7 @@ def write(
         video.width, video.height = size
         video.pix_fmt = "yuv420p"
         video.codec_context.time_base = _time_base(rate)
-        sound = _Sound(container, sound_of, sound_start_s) if sound_of else None
+        sound = _Sound(container, sound_of, sound_start_s, tempo) if sound_of else None
         end = 0.0
         for time_s, picture in pictures:
             if sound:
@@ -80,9 +81,17 @@ def _time_base(rate: Fraction) -> Fraction:
 class _Sound:
     """The sound of a film on its way into another one."""
 
-    def __init__(self, container: av.container.OutputContainer, path: str | Path, start_s: float):
-        self.container, self.path = container, path
-        self.samples = _samples(path, start_s)
+    def __init__(
+        self,
+        container: av.container.OutputContainer,
+        path: str | Path,
+        start_s: float,
+        tempo: Fraction,
+    ):
+        self.container = container
+        self.samples = sound_pieces.seamless(sound_pieces.read(path, start_s))
+        if tempo != 1:
+            self.samples = sound_pieces.at_tempo(self.samples, tempo)
         self.first = next(self.samples, None)
         if self.first is None:
             self.stream = None
@@ -95,7 +104,12 @@ class _Sound:
     def advance(self, until_s: float) -> None:
         """Write what sounds before a time."""
         while self.first is not None and self.written < until_s * self.rate:
-            self._place(self.first[2], self.first[3])
+            planes = np.ascontiguousarray(self.first[3])
+            frame = av.AudioFrame.from_ndarray(planes, format="fltp", layout=self.layout)
+            frame.sample_rate, frame.pts = self.rate, self.written
+            frame.time_base = Fraction(1, self.rate)
+            self.written += planes.shape[1]
+            self.container.mux(self.stream.encode(frame))
             self.first = next(self.samples, None)
 
     def finish(self, end_s: float) -> None:
@@ -104,50 +118,3 @@ class _Sound:
             return
         self.advance(end_s)
         self.container.mux(self.stream.encode())
-
-    def _place(self, start: int, planes: np.ndarray) -> None:
-        """Write samples that begin at a sample number: gaps become silence, overlaps are cut."""
-        planes = planes[:, max(self.written - start, 0) :]
-        gap = max(start - self.written, 0)
-        planes = np.pad(planes, ((0, 0), (gap, 0)))
-        if planes.shape[1] == 0:
-            return
-        frame = av.AudioFrame.from_ndarray(
-            np.ascontiguousarray(planes), format="fltp", layout=self.layout
-        )
-        frame.sample_rate, frame.pts = self.rate, self.written
-        frame.time_base = Fraction(1, self.rate)
-        self.written += planes.shape[1]
-        self.container.mux(self.stream.encode(frame))
-
-
-def _samples(path: str | Path, start_s: float) -> Iterator[tuple[int, str, int, np.ndarray]]:
-    """Yield sampling rate, channel layout, first sample's number and (C, N) samples of a sound.
-
-    Sample 0 sounds `start_s` after the film's first picture. Nothing comes from a silent film.
-    """
-    try:
-        with av.open(str(path)) as container:
-            if not container.streams.audio:
-                return
-            origin = _first_picture(path) + start_s
-            stream = container.streams.audio[0]
-            layout = "mono" if stream.channels == 1 else "stereo"
-            rate = stream.rate if stream.rate in SOUND_RATES else SOUND_RATES[-1]
-            resampler = av.AudioResampler("fltp", layout, rate)
-            for frame in container.decode(stream):
-                for part in resampler.resample(frame):
-                    start = round((part.time - origin) * part.sample_rate)
-                    yield part.sample_rate, layout, start, part.to_ndarray()
-    except av.error.FFmpegError as error:
-        message = f"its sound cannot be decoded ({error.strerror}): export it again"
-        raise errors.InputError(path, message) from error
-
-
-def _first_picture(path: str | Path) -> float:
-    """Return the presentation time of a film's first picture [s]."""
-    with av.open(str(path)) as container:
-        if not container.streams.video:
-            return 0.0
-        frame = next(container.decode(video=0), None)
-        return frame.time if frame is not None else 0.0

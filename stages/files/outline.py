@@ -46,6 +46,20 @@ def _path(points: np.ndarray, closed: bool) -> str:
     return f"M{steps}{'Z' if closed else ''}"
 
 
+def dots(points: np.ndarray, neutral: np.ndarray) -> list[dict[str, str]]:
+    """Return where points (P, 2 or 3) lie and where the neutral has them, those that are known."""
+    return [
+        {
+            "x": f"{place[0]:.4f}",
+            "y": f"{place[1]:.4f}",
+            "from_x": f"{rest[0]:.4f}",
+            "from_y": f"{rest[1]:.4f}",
+        }
+        for place, rest in zip(points, neutral, strict=True)
+        if np.isfinite(place[:2]).all()
+    ]
+
+
 def window(points: np.ndarray) -> dict[str, str]:
     """Return `view_box` and `stroke` of a square drawing, y down, that holds (N, 2) points."""
     known = points[np.isfinite(points).all(axis=1)]

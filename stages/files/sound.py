@@ -45,7 +45,7 @@ def read(path: str | Path, rate: int) -> tuple[np.ndarray, float]:
                 message = "has no sound: give one with sound, or set sync_offset_s in shots.tsv"
                 raise errors.InputError(path, message)
             samples, start = _joined(path, _decoded(container, rate), rate)
-        first = _first_picture(path)
+        first = first_picture(path)
     # what PyAV refuses itself, such as a change of channels, is a plain ValueError
     except (av.error.FFmpegError, ValueError) as error:
         if isinstance(error, errors.InputError):
@@ -93,7 +93,7 @@ def _joined(
     return joined, start
 
 
-def _first_picture(path: str | Path) -> float | None:
+def first_picture(path: str | Path) -> float | None:
     """Return the presentation time of a film's first picture [s]; None where there is no film.
 
     The cover of a song is not a film.

@@ -13,6 +13,8 @@ from stages.files import film, film_writer, series, tracked_film
 
 # previews of markers alone show no more pictures a second
 MOST_PER_S = 30
+# of the nominal rate of a film, whose pictures have times of their own
+LARGEST_DENOMINATOR = 1001
 
 
 @dataclasses.dataclass(frozen=True)
@@ -27,6 +29,7 @@ class Source:
     start_s : time of the first picture [s]
     sound_of : the film whose sound is heard, or None
     moments : the pictures, in order
+    tempo : how many seconds of the film pass in one of the preview
     """
 
     width: int
@@ -35,6 +38,7 @@ class Source:
     start_s: float
     sound_of: str | None
     moments: Iterator[preview.Moment]
+    tempo: Fraction = film_writer.NORMAL
 
 
 def read(
@@ -84,7 +88,16 @@ def write(
     """Write a preview: the source on the left, `character(time_s)` on the right."""
     shown: Iterable = preview.frames(source.moments, title, character)
     size = preview.size(source.width)
-    film_writer.write(path, shown, size, source.rate, source.sound_of, source.start_s)
+    film_writer.write(path, shown, size, source.rate, source.sound_of, source.start_s, source.tempo)
+
+
+def at_tempo(source: Source, tempo: Fraction) -> Source:
+    """Return a source whose pictures and sound pass at another tempo."""
+    if tempo == 1:
+        return source
+    moments = (moment._replace(time_s=moment.time_s / float(tempo)) for moment in source.moments)
+    rate = (source.rate * tempo).limit_denominator(LARGEST_DENOMINATOR)
+    return dataclasses.replace(source, moments=moments, rate=rate, tempo=tempo)
 
 
 class _Markers:
@@ -170,9 +183,10 @@ def _tracked_moments(
 
 
 def _with_markers(moment: preview.Moment, markers: _Markers | None) -> preview.Moment:
-    """Put the markers beside a picture; they then give the confidence."""
+    """Put the markers beside a picture; the confidence is the lower of the two."""
     if markers is None:
         return moment
     row = markers.row(moment.time_s)
     both = np.concatenate([moment.picture, markers.paint(row)], axis=1)
-    return moment._replace(picture=both, confidence=float(markers.confidence[row]))
+    lower = min(moment.confidence, float(markers.confidence[row]))
+    return moment._replace(picture=both, confidence=lower)

@@ -1,10 +1,11 @@
 """The table of visemes: which mouth every phone shows, in one column a scheme.
 
-Columns: phone (ARPAbet, lower case, without stress) and `deng2006`, the 15 groups of Deng et al.
-2006, table 1, each named by its members there. Not in the paper's table, and added to the group
-that they look like: sil, sp, h# (silence), bcl, pcl, dcl, tcl, gcl, kcl (closures of stops), eng,
-ax-h, ix, ux, axr, dx, nx, wh, hv and q. A blank cell is a phone whose mouth is not known: spn,
-a word that the aligner's dictionary lacks.
+Columns: phone (ARPAbet, lower case, without stress); `deng2006`, the 15 groups of Deng et al.
+2006, table 1, each named by its members there; `kholgade2011`, the 12 visemes of Kholgade et al.
+2011, named as in the table of extremes (the paper gives their number alone). Not in the former's
+table, and added to the group that they look like: sil, sp, h# (silence), bcl, pcl, dcl, tcl, gcl,
+kcl (closures of stops), eng, ax-h, ix, ux, axr, dx, nx, wh, hv and q. A blank cell is a phone
+whose mouth is not known: spn, a word that the aligner's dictionary lacks.
 """
 
 import re
@@ -12,7 +13,7 @@ from pathlib import Path
 
 from stages.files import delimited, errors
 
-SCHEMES = ("deng2006",)
+SCHEMES = ("deng2006", "kholgade2011")
 SILENCE = "pau"
 STRESS = re.compile(r"(?<=[a-z])[012]$")
 

@@ -103,7 +103,9 @@ def write_csv(
     path: str | Path, frame: np.ndarray, time_s: np.ndarray, columns: dict[str, np.ndarray]
 ) -> None:
     """Write curves as comma-separated text: frame, time_s, then a column for each."""
-    values = np.stack(list(columns.values()), axis=1).astype(np.float32)
+    values = np.zeros((len(frame), len(columns)), np.float32)
+    for column, curve in enumerate(columns.values()):
+        values[:, column] = curve
     with (
         atomic.replacing(path) as temporary,
         temporary.open("w", encoding="utf-8", newline="\n") as stream,

@@ -211,3 +211,55 @@ def test_bad_arrays_are_refused():
         motion_filter.filtered(np.zeros((5, 3)), 60, np.ones(2), np.zeros((5, 3)))
     with pytest.raises(ValueError, match=r"cutoff 0.0 is not above zero"):
         motion_filter.filtered(np.zeros((5, 1)), 60, np.zeros(1), np.zeros((5, 1)))
+
+
+@hypothesis.settings(deadline=None, max_examples=30)
+@hypothesis.given(
+    st.integers(0, 10_000), st.sampled_from([30, 60, 120]), st.sampled_from([0.0, 0.05, 0.5])
+)
+def test_parts_of_a_whole_stay_parts_of_it(seed, rate, noise):
+    rng = np.random.default_rng(seed)
+    time = clock(rate, 4.0)
+    closed = np.clip(sum(blink(time - start) for start in rng.uniform(0, 3.5, 4)), 0, 1)
+    waves = 2 * np.sin(np.outer(time, rng.uniform(1, 40, 6)) + rng.uniform(0, 6, 6))
+    rest = np.exp(waves + noise * rng.standard_normal(waves.shape))
+    rest *= ((1 - closed) / rest.sum(axis=1))[:, None]
+    # two wholes: all their parts but one, which moves nothing, have a column
+    values = np.concatenate([closed[:, None], rest[:, :3], rest[:, 3:5]], axis=1)
+    whole = np.array([7, 7, 7, 7, 2, 2])
+    names = ["eyes.blink_closed", *(f"eyes.emotion_{i}" for i in range(3))]
+    names += ["mouth.speech_m", "mouth.emotion_joy"]
+    gap = 0.2 + 0.2 * np.sin(9 * time)
+    events = kept_moments.find(values, names, [""] * 6, rate, gap)
+    made = motion_filter.filtered(values, rate, np.full(6, 10.0), events, whole)
+    assert made.min() > -1e-12
+    for part in (whole == 7, whole == 2):
+        assert made[:, part].sum(axis=1).max() <= values[:, part].sum(axis=1).max() + 1e-12
+
+
+def test_what_goes_together_keeps_its_blinks_and_loses_its_jitter():
+    rate = 120
+    truth = blinking(rate)
+    noise = 0.02 * np.random.default_rng(0).standard_normal((len(truth), 2))
+    values = np.stack([truth, 1 - truth], axis=1) + noise
+    names = ["eyes.blink_closed", "eyes.emotion_joy"]
+    events = kept_moments.find(values, names, ["", ""], rate)
+    made = motion_filter.filtered(values, rate, np.full(2, 10.0), events, np.zeros(2, int))
+    peaks = at_their_height(rate)
+    assert np.mean(made[peaks, 0]) > 0.95 * np.mean(truth[peaks])
+    calm = events[:, 0] == 0
+    wanted = np.stack([truth, 1 - truth], axis=1)[calm]
+    assert np.std(made[calm] - wanted) < 0.5 * np.std(values[calm] - wanted)
+
+
+def test_curves_apart_break_the_whole_that_curves_together_keep():
+    rate = 60
+    closed = blinking(rate, height=0.8)
+    values = np.stack([closed, 1 - closed], axis=1)
+    names = ["eyes.blink_closed", "eyes.emotion_joy"]
+    events = kept_moments.find(values, names, ["", ""], rate)
+    cutoff = np.full(2, 5.0)
+    apart = motion_filter.filtered(values, rate, cutoff, events)
+    together = motion_filter.filtered(values, rate, cutoff, events, np.zeros(2, int))
+    assert apart.sum(axis=1).max() > 1.05
+    np.testing.assert_allclose(together.sum(axis=1), 1.0, atol=1e-12)

@@ -171,3 +171,17 @@ def test_a_film_that_is_not_tracked_stands_beside_its_markers(take):
     assert shown[0][1].shape[1] == width + marker_panel.WIDTH + preview.HEIGHT
     assert np.abs(shown[3][1][: preview.HEIGHT, :width].astype(int) - 90).max() < 30
     assert orange(shown[0][1][:, width : width + marker_panel.WIDTH]) > 10
+
+
+def test_where_both_drive_a_take_contours_and_markers_show_and_the_worse_warns(take):
+    render_preview.main([*mesh_options(take), "--performance", write_markers(take, FRAMES / 30)])
+    shown = pictures(take)
+    width = preview.film_width(128, 96)
+    assert shown[0][1].shape[1] == width + marker_panel.WIDTH + preview.HEIGHT
+    films = [picture[: preview.HEIGHT, :width].astype(int) for _, picture in shown]
+    assert np.abs(films[3] - 90).max() > 60
+    assert orange(shown[0][1][:, width : width + marker_panel.WIDTH]) > 10
+    # the film's points were lost on the first frame, the markers never
+    strips = [picture[preview.HEIGHT :, -120:].astype(int) for _, picture in shown]
+    warns = [(strip[..., 0] - strip[..., 2] > 60).any() for strip in strips]
+    assert warns == [True] + [False] * (FRAMES - 1)

@@ -204,13 +204,13 @@ SENSELESS = [
         "characters",
         "solved\tblendshapes\tplate\tneutral.obj\t\t",
         "solved\tkey_shapes\tplate\tneutral.glb\tmasks.tsv\t",
-        r"config/characters\.tsv: line 3, column neutral: sculpts need an \.obj",
+        r"config/characters\.tsv: line 3, column neutral: this method needs an \.obj",
     ),
     (
         "characters",
         "solved\tblendshapes\tplate\tneutral.obj\t\t",
         "solved\tkey_shapes\tplate\tneutral.obj\tmasks.tsv\t",
-        r"config/cast\.tsv: line 3, column points: method key_shapes is driven by the film",
+        r"config/cast\.tsv: line 3, column points: method key_shapes is driven by video; write",
     ),
     (
         "shots",

@@ -78,14 +78,80 @@ rule assemble_rig:
         " 2> {log:q}"
 
 
+rule shape_motion:
+    input:
+        curve_channels_source,
+        solution=solution_of,
+        head_motion=head_motion_of,
+        rig=rig_of,
+    output:
+        shaped="results/takes/{shot}/{character}/shaped.parquet",
+        shaped_head="results/takes/{shot}/{character}/shaped_head.parquet",
+    log:
+        "logs/shape_motion/{shot}/{character}.log",
+    benchmark:
+        "logs/shape_motion/{shot}/{character}.tsv"
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("shape_motion"),
+        channels=curve_channels,
+        head_gain=character_cell("head_gain"),
+        head_limit=character_cell("head_limit"),
+        head_axes=character_cell("head_axes"),
+        follow_s=character_cell("follow_s"),
+        damping=character_cell("damping"),
+        followed=character_cell("followed"),
+    shell:
+        "python -m stages.shape_motion"
+        " --solution {input.solution:q}"
+        " --head-motion {input.head_motion:q}"
+        " --rig {input.rig:q}"
+        " --channels={params.channels:q}"
+        " --head-gain={params.head_gain:q}"
+        " --head-limit={params.head_limit:q}"
+        " --head-axes={params.head_axes:q}"
+        " --follow-s {params.follow_s}"
+        " --damping {params.damping}"
+        " --followed {params.followed:q}"
+        " --shaped {output.shaped:q}"
+        " --shaped-head {output.shaped_head:q}"
+        " 2> {log:q}"
+
+
+rule learn_dynamics:
+    input:
+        solutions=basis_solutions,
+        rig="results/cast/{actor}/{character}/rig.npz",
+    output:
+        dynamics="results/cast/{actor}/{character}/dynamics.npz",
+    log:
+        "logs/learn_dynamics/{actor}/{character}.log",
+    benchmark:
+        "logs/learn_dynamics/{actor}/{character}.tsv"
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("learn_dynamics"),
+    shell:
+        "python -m stages.learn_dynamics"
+        " --solutions {input.solutions:q}"
+        " --rig {input.rig:q}"
+        " --dynamics {output.dynamics:q}"
+        " 2> {log:q}"
+
+
 rule smooth_weights:
     input:
         cut_film_source,
-        character_source("channels"),
-        solution=solution_of,
-        head_motion=head_motion_of,
+        curve_channels_source,
+        solution=smoothed_solution,
+        head_motion=smoothed_head_motion,
         expression=expression_of,
         rig=rig_of,
+        dynamics=dynamics_of,
         edits=edits_of,
     output:
         weights="results/takes/{shot}/{character}/weights.parquet",
@@ -99,8 +165,10 @@ rule smooth_weights:
     threads: 1
     params:
         code=code_of("smooth_weights"),
-        channels=character_path("channels"),
+        channels=curve_channels,
         smoothing=character_cell("smoothing"),
+        gap_filling=character_cell("gap_filling"),
+        tempo=character_cell("tempo"),
         lip_points=lip_points_of,
         first_frame=shot_cell("first_frame"),
         last_frame=shot_cell("last_frame"),
@@ -117,6 +185,9 @@ rule smooth_weights:
         " --rig {input.rig:q}"
         " --channels={params.channels:q}"
         " --smoothing {params.smoothing:q}"
+        " --gap-filling {params.gap_filling:q}"
+        " --dynamics {input.dynamics:q}"
+        " --tempo {params.tempo}"
         " --lip-points={params.lip_points:q}"
         " --rate={params.rate:q}"
         " --head {params.head:q}"
@@ -184,4 +255,28 @@ rule bake_controls:
         " --weights {input.weights:q}"
         " --controls {output.controls:q}"
         " --csv {output.csv:q}"
+        " 2> {log:q}"
+
+
+rule retime_sound:
+    input:
+        take_sound_source,
+    output:
+        retimed="results/takes/{shot}/{character}/sound.flac",
+    log:
+        "logs/retime_sound/{shot}/{character}.log",
+    benchmark:
+        "logs/retime_sound/{shot}/{character}.tsv"
+    conda:
+        "../envs/stages.yaml"
+    threads: 1
+    params:
+        code=code_of("retime_sound"),
+        sound=take_sound,
+        tempo=character_cell("tempo"),
+    shell:
+        "python -m stages.retime_sound"
+        " --sound {params.sound:q}"
+        " --tempo {params.tempo}"
+        " --retimed {output.retimed:q}"
         " 2> {log:q}"

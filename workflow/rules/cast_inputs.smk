@@ -43,6 +43,17 @@ def folder_of(name):
     return folder
 
 
+def curve_channels(wildcards):
+    """Return the table of a take's own curves; that of layers concerns their delivery."""
+    layered = character_row(wildcards.character)["method"] == "layers"
+    return "" if layered else character_path("channels")(wildcards)
+
+
+def curve_channels_source(wildcards):
+    """Return that table if it exists."""
+    return present([curve_channels(wildcards)])
+
+
 def sculpts(wildcards):
     """Return the sculpts of a character, sorted: editing, adding or removing one is noticed."""
     suffix = Path(character_row(wildcards.character)["neutral"]).suffix
@@ -180,75 +191,3 @@ def regression_of(wildcards):
     """Return the trained regression of a take's actor and character."""
     actor = session_of(wildcards.shot)["actor"]
     return f"results/cast/{actor}/{wildcards.character}/rbf.npz"
-
-
-def solution_of(wildcards):
-    """Return the weights that a take's method finds, before smoothing."""
-    method = character_row(wildcards.character)["method"]
-    take = f"results/takes/{wildcards.shot}/{wildcards.character}"
-    if points_of(wildcards) == "curves":
-        return f"{take}/mapped.parquet"
-    return {
-        "key_shapes": f"results/shots/{wildcards.shot}/key_weights.parquet",
-        "rbf": f"{take}/predicted.parquet",
-        "blendshapes": f"{take}/solved.parquet",
-    }[method]
-
-
-def rig_of(wildcards):
-    """Return the rig of a take's actor and character."""
-    actor = session_of(wildcards.shot)["actor"]
-    return f"results/cast/{actor}/{wildcards.character}/rig.npz"
-
-
-def head_motion_of(wildcards):
-    """Return the head motion of a take, from its points or recorded with its curves."""
-    name = "curve_head_motion" if points_of(wildcards) == "curves" else "head_motion"
-    return f"results/shots/{wildcards.shot}/{name}.parquet"
-
-
-def expression_of(wildcards):
-    """Return the expression of a take that points drive."""
-    path = f"results/shots/{wildcards.shot}/expression.parquet"
-    return [] if points_of(wildcards) == "curves" else [path]
-
-
-def cut_film(wildcards):
-    """Return the film in whose frames a shot's cut and timecode are counted, if they are."""
-    shot = row_of(SHOW["shots"], "shot", wildcards.shot)
-    counted = any(shot[column] for column in ("first_frame", "last_frame", "start_timecode"))
-    return [shot["video"]] if counted and shot["video"] else []
-
-
-def cut_film_source(wildcards):
-    """Return that film if it exists."""
-    return present(cut_film(wildcards))
-
-
-def edits_of(wildcards):
-    """Return an animator's edited curves of a take, sorted: a later one has the last word."""
-    folder = f"edits/{wildcards.shot}"
-    tables = [files_of(wildcards.character, f"{folder}/*.{kind}") for kind in ("tsv", "csv")]
-    return sorted(sum(tables, []))
-
-
-def lip_points_of(wildcards):
-    """Return the points that show lip closures in a take that points drive."""
-    return session_cell("lip_points")(wildcards) if expression_of(wildcards) else ""
-
-
-def shown_curves(wildcards):
-    """Return the recorded curves of a take that they drive."""
-    path = f"results/shots/{wildcards.shot}/curves.parquet"
-    return [path] if points_of(wildcards) == "curves" else []
-
-
-def shown_tracked(wildcards):
-    """Return the tracked points of a take that the film's points drive."""
-    return tracked_of(wildcards) if points_of(wildcards) == "video" else []
-
-
-def shown_performance(wildcards):
-    """Return the performance of a take that markers drive."""
-    path = f"results/shots/{wildcards.shot}/performance.parquet"
-    return [path] if points_of(wildcards) == "markers" else []

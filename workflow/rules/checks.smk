@@ -1,11 +1,21 @@
 """What the tables of a show must say together, beyond what each says alone; no rules."""
 
+# what may drive the characters of each method
+POINTS = {
+    "key_shapes": ["video"],
+    "layers": ["video", "markers", "both"],
+    "rbf": ["video", "markers", "curves"],
+    "blendshapes": ["video", "markers", "curves"],
+}
+
 
 def has_points(tables, shot, points):
     """Return whether a shot has markers, or film points that are tracked.
 
     A film beside markers is tracked only where its session has labels: else it is for people.
     """
+    if points == "both":
+        return all(has_points(tables, shot, kind) for kind in ("video", "markers"))
     if points in ("markers", "curves"):
         return bool(shot[points])
     if shot["landmarks"] or not shot["video"]:
@@ -38,6 +48,24 @@ def check_references(tables, face_regions):
             show.check_references(f"config/{name}.tsv", tables[name], column, names, where)
 
 
+def check_expression(tables, row):
+    """Refuse an extreme that is seen in another actor's shot."""
+    session = row_of(tables["shots"], "shot", row.cells["shot"])["session"]
+    whose = row_of(tables["sessions"], "session", session)["actor"]
+    if whose != row.cells["actor"]:
+        message = f"'{row.cells['shot']}' shows {whose}; choose a shot of {row.cells['actor']}"
+        refuse("expressions", row, "shot", message)
+
+
+def check_directing(tables, row):
+    """Refuse gains of takes without layers, and times that are none."""
+    shots = cells(tables["shots"], "shot")
+    show.check_references("config/directing.tsv", [row], "shot", shots, "shots.tsv")
+    if row_of(tables["characters"], "character", row.cells["character"])["method"] != "layers":
+        message = f"'{row.cells['character']}' is not driven by layers; only they can be directed"
+        refuse("directing", row, "character", message)
+
+
 def check_sense(tables, face_regions):
     """Refuse rows that ask for what other cells do not give."""
     if not face_regions and any(
@@ -54,6 +82,10 @@ def check_sense(tables, face_regions):
         check_character(row)
     for row in tables["cast"]:
         check_cast(tables, row)
+    for row in tables["expressions"]:
+        check_expression(tables, row)
+    for row in tables["directing"]:
+        check_directing(tables, row)
 
 
 def check_cut(row):
@@ -111,11 +143,24 @@ def check_session(tables, row):
 
 def check_character(row):
     """Refuse a character without the file that its method needs."""
-    needed = {"key_shapes": "masks", "blendshapes": "virtual_markers"}
-    if row.cells["method"] == "key_shapes" and "livelink" in show.listed(row.cells["outputs"]):
+    needed = {"key_shapes": "masks", "layers": "masks", "blendshapes": "virtual_markers"}
+    own_shapes = row.cells["method"] in ("key_shapes", "layers")
+    named = not own_shapes or row.cells["delivery_shapes"]
+    if not named and "livelink" in show.listed(row.cells["outputs"]):
         refuse("characters", row, "outputs", "livelink needs a rig of named shapes; remove it")
-    if row.cells["method"] == "key_shapes" and row.cells["neutral"].endswith(".glb"):
-        refuse("characters", row, "neutral", "sculpts need an .obj, .ply or .csv; export the mesh")
+    if own_shapes and row.cells["neutral"].endswith(".glb"):
+        refuse("characters", row, "neutral", "this method needs an .obj, .ply or .csv; export one")
+    if row.cells["method"] == "layers" and row.cells["masks"].endswith(".ply"):
+        if len(show.listed(row.cells["painted_masks"])) != 3:
+            message = "masks are painted; name those that are red, green and blue, with commas"
+            refuse("characters", row, "painted_masks", message)
+    if row.cells["method"] == "layers" and row.cells["channels"]:
+        if not row.cells["delivery_shapes"]:
+            message = "method layers has channels of its delivery_shapes alone; clear the cell"
+            refuse("characters", row, "channels", message)
+    for column in ("tempo", "damping"):
+        if float(row.cells[column]) == 0:
+            refuse("characters", row, column, "must be above 0; write 1 for no change")
     column = needed.get(row.cells["method"])
     if row.cells["outputs"] and row.cells["neutral"].endswith(".csv"):
         refuse("characters", row, "outputs", "a table of controls has no mesh; clear the cell")
@@ -127,9 +172,6 @@ def check_cast(tables, row):
     """Refuse a take whose points do not exist, or do not fit the character's method."""
     method = row_of(tables["characters"], "character", row.cells["character"])["method"]
     points, wanted = row.cells["points"], show.listed(row.cells["shots"])
-    if points != "video" and method == "key_shapes":
-        message = "method key_shapes is driven by the film; write video, or choose another method"
-        refuse("cast", row, "points", message)
     sessions = [
         other.cells["session"]
         for other in tables["sessions"]

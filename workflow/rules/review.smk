@@ -36,9 +36,11 @@ rule render_preview:
     params:
         code=code_of("render_preview"),
         video=shot_cell("video"),
+        tempo=character_cell("tempo"),
     shell:
         "python -m stages.render_preview"
         " --video={params.video:q}"
+        " --tempo {params.tempo}"
         " --tracked {input.tracked:q}"
         " --performance {input.performance:q}"
         " --curves {input.curves:q}"
@@ -82,9 +84,11 @@ rule render_controls:
     params:
         code=code_of("render_controls"),
         video=shot_cell("video"),
+        tempo=character_cell("tempo"),
     shell:
         "python -m stages.render_controls"
         " --video={params.video:q}"
+        " --tempo {params.tempo}"
         " --tracked {input.tracked:q}"
         " --performance {input.performance:q}"
         " --curves {input.curves:q}"

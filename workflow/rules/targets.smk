@@ -14,14 +14,26 @@ OUTPUTS = {
 }
 
 
+# of these, those that hold the curves of named shapes
+CURVES = ("blender", "keys", "livelink", "maya")
+
+
+def delivers(row, name):
+    """Return whether an output shows the blendshapes onto which layers are projected."""
+    return row["method"] == "layers" and bool(row["delivery_shapes"]) and name in CURVES
+
+
 def takes():
     """Return what shows that a take is done, and the further files that are asked for."""
     wanted = []
     for shot, character in cast_takes():
         folder = f"results/takes/{shot}/{character}"
-        wanted.append(f"{folder}/preview.mp4")
-        for name in show.listed(character_row(character)["outputs"]):
-            wanted += [f"{folder}/{file}" for file in OUTPUTS[name]]
+        wanted += [f"{folder}/preview.mp4", *layer_outputs(shot, character)]
+        wanted += retimed_sound(shot, character)
+        row = character_row(character)
+        for name in show.listed(row["outputs"]):
+            place = f"{folder}/delivery" if delivers(row, name) else folder
+            wanted += [f"{place}/{file}" for file in OUTPUTS[name]]
     return wanted
 
 
@@ -31,7 +43,7 @@ def rig_checks():
     rigs = [
         f"results/cast/{row['actor']}/{row['character']}"
         for row in played
-        if character_row(row["character"])["method"] != "key_shapes"
+        if character_row(row["character"])["method"] in ("rbf", "blendshapes")
     ]
     return [f"{folder}/rig_checks.tsv" for folder in dict.fromkeys(rigs)]
 

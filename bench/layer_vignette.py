@@ -1,0 +1,277 @@
+"""The example's vignette for trials of layers: points, truth, solutions, what they make of rigs.
+
+Everything is read from a finished show. `Take.solve` solves as the stage does, with whatever
+settings a trial asks for, and keeps what it has solved.
+"""
+
+import dataclasses
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from stages.core import (
+    coordinate_balance,
+    layer_composition,
+    layer_model,
+    layer_solver,
+    lip_closeness,
+    local_shapes,
+)
+from stages.files import layer_points, lip_gap, rig, simplices
+
+SHOT, ACTOR = "vignette", "mia"
+CHARACTERS = ("clay_layers", "tortoise", "globe", "cassette")
+MOVES_MM = 0.1
+LIP_MARKERS = "MULP,MLLP"
+
+
+class How(NamedTuple):
+    """Say how layers are solved: columns of characters.tsv, and which points are seen."""
+
+    lip_sigma: float = 0.02
+    temporal: float = 0.05
+    beyond: float = 0.0
+    balance: str = "variance"
+    points: str = "both"
+    lips_yield: str = "face"
+    lips: str = "film"
+
+
+class Solved(NamedTuple):
+    """Hold weights (T, R, J), coefficients (T, K), amplitudes (T, J), u (T, R, K), gamma (T,)."""
+
+    weights: np.ndarray
+    coefficients: np.ndarray
+    amplitudes: np.ndarray
+    u: np.ndarray
+    gamma: np.ndarray
+
+
+@dataclasses.dataclass
+class Take:
+    """Hold the vignette as it was measured, and as it was planted.
+
+    Attributes
+    ----------
+    show : folder of the show
+    made : what actor and characters share; all characters of the example share the same
+    offsets : (T, D) float array [face units]
+    gaps : of the lips by `film`, `markers` or `truth`, (T,) float array less the closed gap
+    rate : frames per second
+    truth : what the generator knows, by name
+    lips_apart : (2,) float array [face units], from the lower lip to the upper in the neutral
+    planted : (T, R, K) float array, strengths of the layers times coefficients
+    kept : solutions by how they were found
+    """
+
+    show: Path
+    made: simplices.Simplices
+    offsets: np.ndarray
+    gaps: dict
+    rate: float
+    truth: dict
+    lips_apart: np.ndarray
+    planted: np.ndarray
+    kept: dict = dataclasses.field(default_factory=dict)
+
+    def solve(self, how: How) -> Solved:
+        """Return the layers of the vignette."""
+        if how not in self.kept:
+            self.kept[how] = solve(self.made, self.offsets, self.gaps[how.lips], self.rate, how)
+        return self.kept[how]
+
+    def fresh(self, made: simplices.Simplices) -> None:
+        """Refuse a character whose extremes are others."""
+        if made.extremes != self.made.extremes or not np.array_equal(made.basis, self.made.basis):
+            raise ValueError("the characters of the example no longer share the same extremes")
+
+
+class Body(NamedTuple):
+    """Hold a character as displacements of its columns.
+
+    Attributes
+    ----------
+    name : of the character
+    names : of its columns
+    columns : mask and extreme of each column, (C, 2) int array
+    moves : (C, V, 3) float array [mm], displacements under their masks
+    neutral : (V, 3) float array [mm]
+    masks : (R, V) float array
+    moving : (V,) bool array, vertices that any column moves
+    height : of the character, along y [mm]
+    """
+
+    name: str
+    names: list[str]
+    columns: np.ndarray
+    moves: np.ndarray
+    neutral: np.ndarray
+    masks: np.ndarray
+    moving: np.ndarray
+    height: float
+
+
+def read(show: Path) -> Take:
+    """Read the vignette of a finished show."""
+    cast = show / "results/cast" / ACTOR
+    made = simplices.read(cast / CHARACTERS[0] / "simplices.npz")
+    path = show / "results/shots" / SHOT / "expression.parquet"
+    points = layer_points.read(path, made.driven_by)
+    truth = dict(np.load(show / "data_example/truth" / f"{SHOT}.npz"))
+    count = len(points.frame)
+    truth = {name: v[:count] if len(v) == count + 1 else v for name, v in truth.items()}
+    take = Take(
+        show,
+        made,
+        layer_points.flat(points, made.layout),
+        _gaps(show, made, truth),
+        float(points.rate),
+        truth,
+        _lips_apart(made, points),
+        np.zeros(0),
+    )
+    take.planted = planted(take)
+    for name in CHARACTERS[1:]:
+        take.fresh(simplices.read(cast / name / "simplices.npz"))
+    return take
+
+
+def _lips_apart(made: simplices.Simplices, points: layer_points.LayerPoints) -> np.ndarray:
+    """Return the way from the lower lip to the upper one on the neutral film (2,)."""
+    film = [each.kind for each in points.layout].index("video")
+    names = points.layout[film].names
+    upper, lower = (points.neutrals[film][names.index(n)] for n in made.lip_points.split(","))
+    return upper - lower
+
+
+def _gaps(show: Path, made: simplices.Simplices, truth: dict) -> dict[str, np.ndarray]:
+    """Return how far the lips stand apart, less the gap of closed ones, by what shows it."""
+    shots = show / "results/shots"
+    path, basis = shots / SHOT / "expression.parquet", shots / "faces/expression.parquet"
+    frames = [layer_points.read(each, "video").frame for each in (path, basis)]
+    names = list(truth["extreme_names"])
+    closed = int(truth["extreme_frame"][names.index("speech_m")])
+    found = {"film": lip_gap.read(path, made.lip_points, frames[0]) - made.closed_gap}
+    seen, still = (
+        lip_gap.read(each, LIP_MARKERS, frame)
+        for each, frame in zip((path, basis), frames, strict=True)
+    )
+    found["markers"] = seen - still[closed]
+    # the film's face unit in mm: what explains its gap
+    known = np.isfinite(found["film"])
+    opening = truth["opening_mm"].astype(float)
+    unit = (opening[known] @ opening[known]) / (opening[known] @ found["film"][known])
+    return found | {"truth": opening / unit}
+
+
+def planted(take: Take) -> np.ndarray:
+    """Return what the generator planted, strength times coefficient (T, R, K)."""
+    truth, made = take.truth, take.made
+    names = list(truth["extreme_names"])
+    order = [names.index("_".join(extreme)) for extreme in made.extremes]
+    masks = [list(truth["mask_names"]).index(name) for name in made.masks]
+    layers = [list(truth["layer_names"]).index(name) for name in made.layers]
+    strength = truth["strength"].astype(float)[:, masks][:, :, layers]
+    coefficient = truth["coefficient"].astype(float)[:, order]
+    return strength[:, :, made.layer] * coefficient[:, None]
+
+
+def solve(
+    made: simplices.Simplices, offsets: np.ndarray, gap: np.ndarray, rate: float, how: How
+) -> Solved:
+    """Solve offsets (T, D) as the stage does; the gap (T,) of the lips is less that of closed."""
+    group = layer_points.group_of(made.layout)
+    kinds = [each.kind for each in made.layout]
+    wanted = layer_points.KINDS[how.points]
+    own = np.isin(group, [kinds.index(kind) for kind in wanted])
+    numbers = np.unique(group[own], return_inverse=True)[1]
+    basis, masks = made.basis[own], made.mask_weights[:, own]
+    scale = coordinate_balance.factors(basis, numbers, masks, how.balance)
+    gamma = np.zeros(len(offsets))
+    if how.lip_sigma > 0:
+        gamma = lip_closeness.closeness(gap, 0.0, how.lip_sigma)
+    lips = simplices.lip_indices(made) if gamma.any() else (-1, -1, -1)
+    model = layer_model.build(basis * scale[:, None], made.layer, masks, *lips)
+    settings = layer_solver.Settings(
+        layer_solver.temporal_at(rate, how.temporal), how.beyond, how.lips_yield
+    )
+    found = layer_solver.solve(model, settings, offsets[:, own] * scale, gamma)
+    u = layer_composition.displacements(
+        made.layer, found.weights, found.coefficients, found.amplitudes
+    )
+    return Solved(found.weights, found.coefficients, found.amplitudes, u, gamma)
+
+
+def body(take: Take, name: str) -> Body:
+    """Read a character."""
+    made = rig.read_any(take.show / "results/cast" / ACTOR / name / "rig.npz")
+    place = {"_".join(extreme): k for k, extreme in enumerate(take.made.extremes)}
+    columns = [
+        (take.made.masks.index(mask), place[extreme])
+        for mask, _, extreme in (column.partition(".") for column in made.names)
+    ]
+    unit = 1000 * rig.METRES[made.unit]
+    moves = local_shapes.dense(local_shapes.masked(made.deltas, made.masks, made.mask_index)) * unit
+    return Body(
+        name,
+        made.names,
+        np.array(columns),
+        moves,
+        made.neutral * unit,
+        made.masks[[made.mask_names.index(mask) for mask in take.made.masks]],
+        np.linalg.norm(moves, axis=2).max(axis=0) > MOVES_MM,
+        float(np.ptp(made.neutral[:, 1]) * unit),
+    )
+
+
+def lone(take: Take, extreme: tuple[str, str]) -> np.ndarray:
+    """Return the displacements (1, R, K) of one extreme in full on the whole face."""
+    u = np.zeros((1, *take.planted.shape[1:]))
+    u[0, :, take.made.extremes.index(extreme)] = 1.0
+    return u
+
+
+def lip_gap_of(take: Take, offsets: np.ndarray) -> np.ndarray:
+    """Return the gap (T,) of the lips on the film, less that of closed ones, of offsets (T, D)."""
+    upper, lower = take.made.lip_points.split(",")
+    names = layer_points.point_names(take.made.layout)
+    point_of = layer_points.point_of(take.made.layout)
+    at = [np.flatnonzero(point_of == names.index(name)) for name in (upper, lower)]
+    between = take.lips_apart + offsets[:, at[0]] - offsets[:, at[1]]
+    return np.linalg.norm(between, axis=1) - take.made.closed_gap
+
+
+def weights_of(character: Body, u: np.ndarray) -> np.ndarray:
+    """Return the weights (T, C) of a character's columns, given u (T, R, K) or those weights."""
+    return u if u.ndim == 2 else u[:, character.columns[:, 0], character.columns[:, 1]]
+
+
+def displaced(character: Body, u: np.ndarray, vertices=slice(None)) -> np.ndarray:
+    """Return displacements (T, V, 3) [mm] of what layers make of a character."""
+    moves = character.moves[:, vertices]
+    flat = weights_of(character, u) @ moves.reshape(len(moves), -1)
+    return flat.reshape(len(u), -1, 3)
+
+
+def distance(character: Body, moved: np.ndarray, true: np.ndarray) -> np.ndarray:
+    """Return the mean distance (T, 1 + R) [mm] over moving vertices, of all and of each mask."""
+    apart = np.linalg.norm(moved - true, axis=2)
+    chosen = [character.moving, *(character.moving & (mask > 0.5) for mask in character.masks)]
+    return np.stack([apart[:, own].mean(axis=1) for own in chosen], axis=1)
+
+
+def talking(take: Take) -> np.ndarray:
+    """Return on which frames (T,) she talks: the planted strength of speech in the mouth."""
+    mouth = list(take.truth["mask_names"]).index("mouth")
+    speech = list(take.truth["layer_names"]).index("speech")
+    return take.truth["strength"][:, mouth, speech].astype(float) > 0.5
+
+
+def row(label: str, cells, width: int = 9, digits: int = 3, first: int = 34) -> str:
+    """Return a line of a table."""
+    text = "".join(
+        f"{cell:>{width}}" if isinstance(cell, str) else f"{cell:>{width}.{digits}f}"
+        for cell in cells
+    )
+    return f"{label:{first}}{text}"

@@ -1,0 +1,332 @@
+"""A show of marker takes of a face in layers, and of two characters they drive, made in a second.
+
+The face is a plate of three masks under markers. In the take `a` it shows each extreme of emotion,
+speech and blink by itself; in `b` it mixes them by factors that are planted, with a film and a
+stretch without markers. `plain` is a mesh with a pose for each extreme, `painted` one whose poses
+are tables of its own blendshapes. Times are those of the film, which starts `AHEAD_S` after `b`.
+"""
+
+import av
+import marker_show
+import numpy as np
+import tiny_show
+
+RATE, FILM_RATE = 30, 10
+AHEAD_S, LENGTH_S = 0.4, 1.6  # of the markers before the film, of the film
+LOST = (30, 36)  # frames of `b` without markers, from the film's first picture
+COLUMNS, ROWS = 7, 8
+MASKS = ("upper", "mouth", "eyes")
+LAYERS = ("emotion", "speech", "blink")
+RESTS = {"emotion": "neutral", "speech": "rest", "blink": "open"}
+EXTREMES = [
+    ("emotion", "joy"),
+    ("emotion", "surprise"),
+    ("emotion", "rage"),
+    ("speech", "m"),
+    ("speech", "aa"),
+    ("blink", "half"),
+    ("blink", "closed"),
+]
+PEAKS = {extreme: 6 + 9 * i for i, extreme in enumerate(EXTREMES)}  # frames of `a`
+MISSING = ("emotion", "rage")  # on the painted character
+MM = 15.0  # of the actor's face where the plate has 1
+# (column, row) of the vertices that each blendshape of the painted character moves
+SHAPES = {
+    "browInnerUp": [(2, 6), (3, 6), (4, 6)],
+    "browDownLeft": [(5, 6), (5, 7)],
+    "eyeBlinkLeft": [(4, 5), (5, 5)],
+    "eyeSquintLeft": [(4, 4), (5, 4)],
+    "mouthClose": [(3, 1)],
+    "jawOpen": [(2, 0), (3, 0), (4, 0)],
+    "mouthSmileLeft": [(5, 2), (5, 1)],
+}
+POSES = {
+    ("emotion", "joy"): {"mouthSmileLeft": 0.9, "eyeSquintLeft": 0.4},
+    ("emotion", "surprise"): {"browInnerUp": 1.0, "jawOpen": 0.4},
+    ("speech", "m"): {"mouthClose": 1.0},
+    ("speech", "aa"): {"jawOpen": 1.0, "mouthClose": 0.1},
+    ("blink", "half"): {"eyeBlinkLeft": 0.45, "eyeSquintLeft": 0.2},
+    ("blink", "closed"): {"eyeBlinkLeft": 1.0},
+}
+MOST_BLINK = 0.25  # of the shape, by the painted character's channels
+CHARACTER_COLUMNS = (
+    "character method folder neutral masks painted_masks delivery_shapes channels unit up_axis "
+    "pivot face_unit rate lip_sigma temporal head head_gain follow_s tempo gap_filling outputs"
+)
+
+
+def grid():
+    """Return column (V,) and row (V,) of the plate's vertices."""
+    x, y = np.indices((COLUMNS, ROWS))
+    return x.ravel(), y.ravel()
+
+
+def neutral(scale=1.0, depth=0.2):
+    """Return the vertices (V, 3) of a bent plate."""
+    x, y = grid()
+    return scale * np.stack([x - 3.0, y - 4.0, -depth * (x - 3) ** 2 - 0.05 * (y - 4) ** 2], axis=1)
+
+
+def masks():
+    """Return the masks (R, V): one row of vertices is half the mouth's, half the upper face's."""
+    _, y = grid()
+    mouth = np.select([y < 3, y == 3], [1.0, 0.5], 0.0)
+    eyes = np.isin(y, (4, 5)).astype(float)
+    return np.stack([1 - mouth - eyes, mouth, eyes])
+
+
+def poses(seed, size):
+    """Return the differences (K, V, 3) of the extremes; sides and top of the plate never move."""
+    x, y = grid()
+    loose = (x % (COLUMNS - 1) > 0) & (y < ROWS - 1)
+    held = {"emotion": loose, "speech": loose & (y < 4), "blink": loose & np.isin(y, (4, 5))}
+    rng = np.random.default_rng(seed)
+    offsets = np.stack(
+        [held[layer][:, None] * rng.uniform(-0.12, 0.12, (len(x), 3)) for layer, _ in EXTREMES]
+    )
+    # lips: the middle of the rows 1 and 2
+    for extreme, lower, upper in ((("speech", "m"), 0.3, -0.3), (("speech", "aa"), -0.5, 0.1)):
+        lips = offsets[EXTREMES.index(extreme)]
+        lips[(y <= 1) & loose, 1] = lower
+        lips[(y == 2) & loose, 1] = upper
+    return size * offsets
+
+
+def factors(time_s):
+    """Return planted weights (T, R, J), coefficients (T, K) and amplitudes (T, J) of `b`."""
+
+    def wave(rate, phase):
+        return 0.5 - 0.5 * np.cos(2 * np.pi * (rate * np.maximum(time_s, 0) + phase))
+
+    weights = np.empty((len(time_s), len(MASKS), len(LAYERS)))
+    for mask, (speech, blink) in enumerate(((0.1, 0.1), (0.75, 0.05), (0.05, 0.7))):
+        weights[:, mask, 1] = speech * (0.7 + 0.3 * wave(0.6, 0.2 * mask))
+        weights[:, mask, 2] = blink * (0.7 + 0.3 * wave(0.8, 0.3 * mask))
+    weights[..., 0] = 1 - weights[..., 1:].sum(axis=-1)
+    coefficients = np.stack([wave(0.3 + 0.17 * k, 0.11 * k) for k in range(len(EXTREMES))], axis=1)
+    coefficients[:, :3] /= 3.2  # what is left to one is the rest's of each layer
+    coefficients[:, 3:] /= 2.1
+    amplitudes = 0.6 + 0.35 * np.stack([wave(0.5, 0), wave(0.9, 0.3), wave(0.4, 0.7)], axis=1)
+    return weights, coefficients, amplitudes
+
+
+def mixture(time_s):
+    """Return the planted weights (T, R, K) of extremes under masks in `b`."""
+    weights, coefficients, amplitudes = factors(time_s)
+    layer = [LAYERS.index(each) for each, _ in EXTREMES]
+    return weights[:, :, layer] * (coefficients * amplitudes[:, layer])[:, None]
+
+
+def composed(under, offsets):
+    """Return the differences (T, V, 3) that weights (T, R, K) make of extremes (K, V, 3)."""
+    return np.einsum("trk,rv,kvd->tvd", under, masks(), offsets)
+
+
+def shown(shot):
+    """Return the weights (T, R, K) of a take, from its markers' first frame."""
+    if shot == "b":
+        count = round((AHEAD_S + LENGTH_S) * RATE)
+        return mixture(np.arange(count) / RATE - AHEAD_S)
+    frame = np.arange(max(PEAKS.values()) + 9)
+    away = np.stack([np.clip(abs(frame - peak) / 5, 0, 1) for peak in PEAKS.values()], axis=1)
+    return np.repeat((0.5 + 0.5 * np.cos(np.pi * away))[:, None], len(MASKS), axis=1)
+
+
+def marker_places(shot):
+    """Return places (T, V, 3) [mm] of a take's markers, on every vertex, and the head's turns."""
+    face = neutral() + composed(shown(shot), poses(1, 1.0))
+    turn = 0.2 * np.sin(2 * np.pi * 0.6 * np.arange(len(face)) / RATE) * (shot == "b")
+    cosine, sine, none = np.cos(turn), np.sin(turn), np.zeros(len(turn))
+    about_y = np.array([[cosine, none, sine], [none, none + 1, none], [-sine, none, cosine]])
+    places = MM * np.einsum("ijt,tpj->tpi", about_y, face)
+    return places + np.stack([20 * turn, 1500 + 10 * turn, none], axis=1)[:, None]
+
+
+def marker(x, y):
+    """Return the name of the marker at a column and row."""
+    return f"M{x}{y}"
+
+
+def write_markers(path, shot):
+    """Write a take as a wide table; `b` has a stretch without markers."""
+    places = marker_places(shot)
+    names = [f"{marker(x, y)}_{axis}" for x, y in zip(*grid(), strict=True) for axis in "xyz"]
+    rows = [("frame", "time_s", *names)]
+    first, last = (round(AHEAD_S * RATE) + frame for frame in LOST)
+    for frame, row in enumerate(places.reshape(len(places), -1)):
+        lost = shot == "b" and first <= frame < last
+        cells = [""] * len(row) if lost else [f"{value:.6f}" for value in row]
+        rows.append((frame, f"{frame / RATE:.6f}", *cells))
+    tiny_show.write_table(path, rows, ",")
+
+
+def write_film(path):
+    """Write a film that darkens, with sound."""
+    samples = marker_show.speech(1)[: round(LENGTH_S * marker_show.SOUND_RATE)]
+    with av.open(str(path), "w") as container:
+        video = container.add_stream("libx264", rate=FILM_RATE, options={"threads": "1"})
+        video.width = video.height = marker_show.SIZE
+        video.pix_fmt = "yuv420p"
+        audio = container.add_stream("aac", rate=marker_show.SOUND_RATE, layout="mono")
+        for grey in np.linspace(200, 50, round(LENGTH_S * FILM_RATE)):
+            picture = np.full((marker_show.SIZE, marker_show.SIZE, 3), grey, np.uint8)
+            container.mux(video.encode(av.VideoFrame.from_ndarray(picture, format="rgb24")))
+        container.mux(video.encode())
+        marker_show.add_sound(container, audio, samples)
+
+
+def corners():
+    """Return the vertices of the plate's faces."""
+    first = [ROWS * i + j for i in range(COLUMNS - 1) for j in range(ROWS - 1)]
+    return [(v, v + ROWS, v + ROWS + 1, v + 1) for v in first]
+
+
+def write_obj(path, vertices):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    lines = ["v {:.6f} {:.6f} {:.6f}".format(*vertex) for vertex in vertices]
+    lines += ["f " + " ".join(str(corner + 1) for corner in face) for face in corners()]
+    path.write_text("\n".join(lines) + "\n")
+
+
+def write_ply(path, vertices, colours):
+    """Write a mesh whose vertices are painted, (V, 3) in 0..1."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    lines = ["ply", "format ascii 1.0", f"element vertex {len(vertices)}"]
+    lines += [f"property float {axis}" for axis in "xyz"]
+    lines += [f"property uchar {colour}" for colour in ("red", "green", "blue")]
+    lines += [f"element face {len(corners())}", "property list uchar int vertex_indices"]
+    lines.append("end_header")
+    for vertex, colour in zip(vertices, np.rint(254 * colours).astype(int), strict=True):
+        lines.append("{:.6f} {:.6f} {:.6f} {} {} {}".format(*vertex, *colour))
+    lines += ["4 " + " ".join(map(str, face)) for face in corners()]
+    path.write_text("\n".join(lines) + "\n")
+
+
+def write_plain(folder):
+    """Write a plate with a table of masks and a pose for each extreme."""
+    write_obj(folder / "neutral.obj", neutral(2.0, 0.1))
+    for (layer, name), offset in zip(EXTREMES, poses(2, 2.0), strict=True):
+        write_obj(folder / "poses" / f"{layer}_{name}.obj", neutral(2.0, 0.1) + offset)
+    rows = [
+        (vertex, mask, f"{weight:g}")
+        for mask, weights in zip(MASKS, masks(), strict=True)
+        for vertex, weight in enumerate(weights)
+        if weight
+    ]
+    tiny_show.write_table(folder / "masks.tsv", [("vertex", "region", "weight"), *rows])
+
+
+def write_painted(folder):
+    """Write a plate with painted masks, blendshapes, and poses as tables of them."""
+    rest = neutral(0.5, 0.3)
+    write_obj(folder / "neutral.obj", rest)
+    write_ply(folder / "masks.ply", rest, masks().T)
+    for number, (name, places) in enumerate(SHAPES.items()):
+        shape = rest.copy()
+        for x, y in places:
+            shape[ROWS * x + y] += 0.3, 0.1 * number, -0.2
+        write_obj(folder / "shapes" / f"{name}.obj", shape)
+    for (layer, name), mix in POSES.items():
+        table = [("name", "value"), *mix.items()]
+        tiny_show.write_table(folder / "poses" / f"{layer}_{name}.csv", table, ",")
+    limits = [("shape", "high"), ("eyeBlinkLeft", MOST_BLINK)]
+    tiny_show.write_table(folder / "channels.tsv", limits)
+
+
+def extreme_rows(actor, shot):
+    """Return an actor's rows of expressions.tsv; all rests are the neutral frame."""
+    rests = [(actor, layer, name, shot, 0) for layer, name in RESTS.items()]
+    return rests + [(actor, *extreme, shot, peak) for extreme, peak in PEAKS.items()]
+
+
+def mask_rows(actor):
+    """Return an actor's rows of actor_masks.tsv."""
+    rows = [(actor, "upper", "*", "")]
+    for x, y in zip(*grid(), strict=True):
+        if y <= 3:
+            rows.append((actor, "mouth", marker(x, y), 0.5 if y == 3 else ""))
+        elif y <= 5:
+            rows.append((actor, "eyes", marker(x, y), ""))
+    return rows
+
+
+def build(folder):
+    """Write the show into a folder: takes `a` and `b` of eve; lea plays nobody."""
+    footage = folder / "footage"
+    footage.mkdir(parents=True)
+    write_film(footage / "b.mp4")
+    for shot in "ab":
+        write_markers(footage / f"{shot}.csv", shot)
+    write_plain(folder / "plain")
+    write_painted(folder / "painted")
+    plain = (
+        "plain",
+        "neutral.obj",
+        "masks.tsv",
+        "",
+        "",
+        "",
+        "cm",
+        "y",
+        "0 0 -2",
+        "8",
+        "film",
+        "0",
+        "0",
+    )
+    painted = ("painted", "neutral.obj", "masks.ply", ",".join(MASKS), "shapes", "channels.tsv")
+    painted += (
+        "cm",
+        "y",
+        "0 0 -1",
+        "2",
+        "15",
+        "0.02",
+        "0.05",
+        "apply",
+        "1 0 1",
+        "0.1",
+        "2",
+        "dynamics",
+    )
+    session = "session actor neutral_shot neutral_frame unit_markers marker_unit lip_points"
+    tables = {
+        "shots": [
+            ("shot", "session", "video", "markers", "sync_offset_s", "basis"),
+            ("a", "s1", "", "footage/a.csv", "", "yes"),
+            ("b", "s1", "footage/b.mp4", "footage/b.csv", -AHEAD_S, ""),
+            ("c", "s2", "", "footage/a.csv", "", "yes"),
+        ],
+        "sessions": [
+            session.split(),
+            ("s1", "eve", "a", "0", "M04,M64", "mm", "M32,M31"),
+            ("s2", "lea", "c", "0", "M04,M64", "mm", "M32,M31"),
+        ],
+        "characters": [
+            CHARACTER_COLUMNS.split(),
+            ("plain", "layers", *plain, "none", "", "", "", "", ""),
+            ("painted", "layers", *painted, "livelink"),
+        ],
+        "cast": [
+            ("actor", "character", "points", "shots"),
+            ("eve", "plain", "markers", "b"),
+            ("eve", "painted", "markers", "b"),
+        ],
+        "expressions": [
+            ("actor", "layer", "name", "shot", "frame"),
+            *extreme_rows("eve", "a"),
+            *extreme_rows("lea", "c"),
+        ],
+        "actor_masks": [("actor", "mask", "point", "weight"), *mask_rows("eve"), *mask_rows("lea")],
+        "directing": [("character", "shot", "layer", "name", "gain", "start_s", "end_s", "fade_s")],
+        "regions": [("region", "point", "weight"), ("mouth", "lips", "1")],
+        "region_settings": [("region", "count"), ("mouth", "2")],
+        "key_shapes": [("actor", "region", "shot", "frame", "state")],
+        "point_set": [("contour", "kind", "count"), ("lips", "closed", "8")],
+    }
+    for name, rows in tables.items():
+        tiny_show.write_table(folder / "config" / f"{name}.tsv", rows)
+    (folder / "config" / "config.yaml").write_text(
+        "tracker_method: eigen_points_descent\nmin_confidence: 0.3\nmax_marker_gap_s: 0.1\n"
+        "seed: 1\n"
+    )
