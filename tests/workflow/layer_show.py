@@ -49,10 +49,34 @@ POSES = {
     ("blink", "closed"): {"eyeBlinkLeft": 1.0},
 }
 MOST_BLINK = 0.25  # of the shape, by the painted character's channels
-CHARACTER_COLUMNS = (
-    "character method folder neutral masks painted_masks delivery_shapes channels unit up_axis "
-    "pivot face_unit rate lip_sigma temporal head head_gain follow_s tempo gap_filling outputs"
-)
+CHARACTERS = {
+    # without what may draw a take away from its points
+    "plain": {
+        "neutral": "neutral.obj",
+        "masks": "masks.tsv",
+        "pivot": "0 0 -2",
+        "face_unit": "8",
+        "lip_sigma": "0",
+        "temporal": "0",
+        "lean": "0",
+        "head": "none",
+    },
+    "painted": {
+        "neutral": "neutral.obj",
+        "masks": "masks.ply",
+        "painted_masks": ",".join(MASKS),
+        "delivery_shapes": "shapes",
+        "channels": "channels.tsv",
+        "pivot": "0 0 -1",
+        "face_unit": "2",
+        "rate": "15",
+        "head_gain": "1 0 1",
+        "follow_s": "0.1",
+        "tempo": "2",
+        "gap_filling": "dynamics",
+        "outputs": "livelink",
+    },
+}
 
 
 def grid():
@@ -233,6 +257,16 @@ def write_painted(folder):
     tiny_show.write_table(folder / "channels.tsv", limits)
 
 
+def character_rows():
+    """Return the rows of characters.tsv, blank where nothing is asked."""
+    columns = list(dict.fromkeys(column for cells in CHARACTERS.values() for column in cells))
+    rows = [("character", "method", "folder", "unit", "up_axis", *columns)]
+    for name, cells in CHARACTERS.items():
+        row = [cells.get(column, "") for column in columns]
+        rows.append((name, "layers", name, "cm", "y", *row))
+    return rows
+
+
 def extreme_rows(actor, shot):
     """Return an actor's rows of expressions.tsv; all rests are the neutral frame."""
     rests = [(actor, layer, name, shot, 0) for layer, name in RESTS.items()]
@@ -259,36 +293,6 @@ def build(folder):
         write_markers(footage / f"{shot}.csv", shot)
     write_plain(folder / "plain")
     write_painted(folder / "painted")
-    plain = (
-        "plain",
-        "neutral.obj",
-        "masks.tsv",
-        "",
-        "",
-        "",
-        "cm",
-        "y",
-        "0 0 -2",
-        "8",
-        "film",
-        "0",
-        "0",
-    )
-    painted = ("painted", "neutral.obj", "masks.ply", ",".join(MASKS), "shapes", "channels.tsv")
-    painted += (
-        "cm",
-        "y",
-        "0 0 -1",
-        "2",
-        "15",
-        "0.02",
-        "0.05",
-        "apply",
-        "1 0 1",
-        "0.1",
-        "2",
-        "dynamics",
-    )
     session = "session actor neutral_shot neutral_frame unit_markers marker_unit lip_points"
     tables = {
         "shots": [
@@ -302,11 +306,7 @@ def build(folder):
             ("s1", "eve", "a", "0", "M04,M64", "mm", "M32,M31"),
             ("s2", "lea", "c", "0", "M04,M64", "mm", "M32,M31"),
         ],
-        "characters": [
-            CHARACTER_COLUMNS.split(),
-            ("plain", "layers", *plain, "none", "", "", "", "", ""),
-            ("painted", "layers", *painted, "livelink"),
-        ],
+        "characters": character_rows(),
         "cast": [
             ("actor", "character", "points", "shots"),
             ("eve", "plain", "markers", "b"),

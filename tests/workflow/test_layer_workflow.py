@@ -92,7 +92,7 @@ def test_a_run_delivers_everything_and_a_second_does_nothing(layered):
 
 
 def test_the_composed_mesh_is_the_planted_one(layered):
-    """Where markers were seen, it is within 0.5 % of the motion on every frame."""
+    """Where markers were seen and no prior asks for else, it is within 0.5 % of the motion."""
     mesh = read_pc2(take(layered, "plain") / "mesh.pc2")
     time_s = series.read(take(layered, "plain") / "weights.parquet", "weights").time_s
     motion = layer_show.composed(layer_show.mixture(time_s), layer_show.poses(2, 2.0))
@@ -126,7 +126,7 @@ def test_a_character_moves_by_its_nature(layered):
         assert np.sqrt(np.mean(error**2)) < 0.1 * planted[extreme].max()
     rising = np.flatnonzero(np.diff(planted["emotion", "joy"]) > 0)
     joy = found["mouth", ("emotion", "joy")]
-    assert (joy[rising] <= planted["emotion", "joy"][rising]).all() and joy[rising].max() > 0.05
+    assert (joy[rising] <= planted["emotion", "joy"][rising]).all() and joy[rising].max() > 0.01
 
 
 def test_delivery_is_the_take_on_the_artists_shapes(layered):
@@ -303,8 +303,8 @@ SENSELESS = [
     ),
     (
         "characters",
-        "masks.tsv\t\t\t\tcm",
-        "masks.tsv\t\t\tchannels.tsv\tcm",
+        "\t0\t0\t0\tnone\t\t\t",
+        "\t0\t0\t0\tnone\t\t\tchannels.tsv",
         r"config/characters\.tsv: line 2, column channels: method layers has channels of its "
         r"delivery_shapes alone; clear the cell",
     ),
