@@ -168,9 +168,9 @@ def _imported(show: Show, shot: Path) -> tuple[Path, str]:
 
 
 def _is_of(path: Path, take: tuple[str, str]) -> bool:
-    """Say whether a benchmark's table is that of a job of a take alone."""
+    """Say whether a benchmark's table is that of a job of the shot, or of the take."""
     parts = [*path.parts[:-1], path.stem]
-    return take[0] in parts and (take[1] in parts or "takes" not in parts)
+    return take[0] in parts and (take[1] in parts or path.stem == take[0])
 
 
 def seconds(path: Path) -> float:

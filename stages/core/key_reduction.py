@@ -68,9 +68,11 @@ def reduce(
     watched = _most_often(mesh_error.worst(parts, curves.wrong.T)[1])
     _settle(curves, local_shapes.at(shapes, watched), np.arange(len(values)), tolerance)
     for _ in range(ROUNDS):
+        before = curves.kept.sum()
         removal.run(local_shapes.at(shapes, watched), tolerance)
+        removed = before - curves.kept.sum()
         worst, found = _put_back(curves, parts, shapes, tolerance)
-        if not len(found):
+        if not len(found) and not removed:
             break
         watched = np.concatenate([watched, np.setdiff1d(_most_often(found), watched)])
     return curves.kept.T, worst
