@@ -24,23 +24,21 @@ from stages.files import layer_points, lip_gap, rig, simplices
 SHOT, ACTOR = "vignette", "mia"
 CHARACTERS = ("clay_layers", "tortoise", "globe", "cassette")
 MOVES_MM = 0.1
-LIP_MARKERS = "MULP,MLLP"
+LIP_MARKERS, UNIT_MARKERS = "MULP,MLLP", ("RECO", "LECO")
 
 
 class How(NamedTuple):
-    """Say how layers are solved: columns of characters.tsv, which points and lips are seen.
-
-    The bias by the gap closes the lips of one character.
-    """
+    """Say how layers are solved, as characters.tsv does, which points are seen, and for whom."""
 
     lip_sigma: float = 0.02
     temporal: float = 0.05
     beyond: float = 0.0
-    balance: str = "variance"
+    balance: str = "mask_variance"
     points: str = "both"
-    lip_bias: str = "published"
+    lip_bias: str = "mouth"
+    lean: float = 0.03
     lips: str = "film"
-    character: str = ""
+    character: str = CHARACTERS[0]
 
 
 class Solved(NamedTuple):
@@ -62,9 +60,9 @@ class Take:
     show : folder of the show
     made : what actor and characters share; all characters of the example share the same
     offsets : (T, D) float array [face units]
-    gaps : of the lips by `film`, `markers` or `truth`, or `told` by all about the mouth, (T,)
-        float array less the closed gap
-    opened : how far the lips of each extreme are open (K,), by character
+    gaps : of the lips by `film`, `markers`, `either`, `told` by all about them, or `truth`, less
+        that of closed ones, (T,) float arrays [face units]
+    opened : character -> (K,) float array, how far its extremes' lips are open [face units]
     rate : frames per second
     truth : what the generator knows, by name
     lips_apart : (2,) float array [face units], from the lower lip to the upper in the neutral
@@ -86,14 +84,8 @@ class Take:
     def solve(self, how: How) -> Solved:
         """Return the layers of the vignette."""
         if how not in self.kept:
-            self.kept[how] = solve(
-                self.made,
-                self.offsets,
-                self.gaps[how.lips],
-                self.rate,
-                how,
-                self.opened.get(how.character),
-            )
+            made = dataclasses.replace(self.made, gaps=self.opened[how.character])
+            self.kept[how] = solve(made, self.offsets, self.gaps[how.lips], self.rate, how)
         return self.kept[how]
 
     def fresh(self, made: simplices.Simplices) -> None:
@@ -161,7 +153,9 @@ def _lips_apart(made: simplices.Simplices, points: layer_points.LayerPoints) -> 
     """Return the way from the lower lip to the upper one on the neutral film (2,)."""
     film = [each.kind for each in points.layout].index("video")
     names = points.layout[film].names
-    upper, lower = (points.neutrals[film][names.index(n)] for n in made.lip_points.split(","))
+    upper, lower = (
+        points.neutrals[film][names.index(n)] for n in made.lip_points.split(";")[0].split(",")
+    )
     return upper - lower
 
 
@@ -182,7 +176,11 @@ def _gaps(show: Path, made: simplices.Simplices, truth: dict) -> dict[str, np.nd
     known = np.isfinite(found["film"])
     opening = truth["opening_mm"].astype(float)
     unit = (opening[known] @ opening[known]) / (opening[known] @ found["film"][known])
-    return found | {"truth": opening / unit}
+    # markers have a larger face unit; lips that either shows closed are closed
+    ends = [truth["marker_neutral"][list(truth["marker_names"]).index(n)] for n in UNIT_MARKERS]
+    by_markers = found["markers"] * np.linalg.norm(ends[1] - ends[0]) / unit
+    either = np.fmin(found["film"], by_markers)
+    return found | {"truth": opening / unit, "either": either}
 
 
 def planted(take: Take) -> np.ndarray:
@@ -198,39 +196,32 @@ def planted(take: Take) -> np.ndarray:
 
 
 def solve(
-    made: simplices.Simplices,
-    offsets: np.ndarray,
-    gap: np.ndarray,
-    rate: float,
-    how: How,
-    opened: np.ndarray | None = None,
+    made: simplices.Simplices, offsets: np.ndarray, gap: np.ndarray, rate: float, how: How
 ) -> Solved:
-    """Solve offsets (T, D) as the stage does; the gap (T,) of the lips is less that of closed.
-
-    `opened` (K,) is how far the lips of a character's extremes are open.
-    """
-    group = layer_points.group_of(made.layout)
-    kinds = [each.kind for each in made.layout]
-    wanted = layer_points.KINDS[how.points]
-    own = np.isin(group, [kinds.index(kind) for kind in wanted])
-    numbers = np.unique(group[own], return_inverse=True)[1]
+    """Solve offsets (T, D) as the stage does; the gap (T,) of the lips is less that of closed."""
+    own = coordinates(made, how.points)
+    numbers = np.unique(layer_points.group_of(made.layout)[own], return_inverse=True)[1]
     basis, masks = made.basis[own], made.mask_weights[:, own]
     scale = coordinate_balance.factors(basis, numbers, masks, how.balance)
     gamma = np.zeros(len(offsets))
     if how.lip_sigma > 0:
         gamma = lip_closeness.closeness(gap, 0.0, how.lip_sigma)
     lips = simplices.lip_indices(made) if gamma.any() else (-1, -1, -1)
-    model = layer_model.build(
-        basis * scale[:, None], made.layer, masks, *lips, opened if gamma.any() else None
-    )
-    settings = layer_solver.Settings(
-        layer_solver.temporal_at(rate, how.temporal), how.beyond, how.lip_bias
-    )
+    opened = made.gaps if gamma.any() else None
+    model = layer_model.build(basis * scale[:, None], made.layer, masks, *lips, opened)
+    temporal = layer_solver.temporal_at(rate, how.temporal)
+    settings = layer_solver.Settings(temporal, how.beyond, how.lip_bias, how.lean)
     found = layer_solver.solve(model, settings, offsets[:, own] * scale, gamma)
     u = layer_composition.displacements(
         made.layer, found.weights, found.coefficients, found.amplitudes
     )
     return Solved(found.weights, found.coefficients, found.amplitudes, u, gamma)
+
+
+def coordinates(made: simplices.Simplices, points: str) -> np.ndarray:
+    """Return which coordinates (D,) belong to `markers`, `video` or `both`."""
+    kinds = np.array([each.kind for each in made.layout])
+    return np.isin(kinds[layer_points.group_of(made.layout)], layer_points.KINDS[points])
 
 
 def body(take: Take, name: str) -> Body:
