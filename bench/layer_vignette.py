@@ -255,7 +255,7 @@ def lone(take: Take, extreme: tuple[str, str]) -> np.ndarray:
 
 def lip_gap_of(take: Take, offsets: np.ndarray) -> np.ndarray:
     """Return the gap (T,) of the lips on the film, less that of closed ones, of offsets (T, D)."""
-    upper, lower = take.made.lip_points.split(",")
+    upper, lower = take.made.lip_points.split(";")[0].split(",")
     names = layer_points.point_names(take.made.layout)
     point_of = layer_points.point_of(take.made.layout)
     at = [np.flatnonzero(point_of == names.index(name)) for name in (upper, lower)]
