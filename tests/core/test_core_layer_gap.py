@@ -45,28 +45,26 @@ def test_closed_lips_keep_an_emotion_whose_lips_are_closed(model):
     assert max(kept["mouth"], kept["published"]) < 0.1
 
 
-def test_closed_lips_close_an_emotion_whose_lips_are_open_and_nothing_else(model):
+def test_closed_lips_close_an_emotion_whose_lips_are_open(model):
     frame = face(model, np.ones(len(LAYER)))
-    settings = layer_solver.Settings(0.0, lip_bias="gap")
-    gaps, elsewhere = [], []
+    settings, gaps = layer_solver.Settings(0.0, lip_bias="gap"), []
     for closeness in (0.0, 0.5, 0.9, 1.0):
         found, _ = layer_solver.solve_frame(model, settings, frame, closeness)
-        wrong = (composed(model, found.weights, found.coefficients) - frame)[MASKS[MOUTH] == 0.0]
-        gaps.append(gap_of(found))
-        elsewhere.append(np.linalg.norm(wrong) / np.linalg.norm(frame[MASKS[MOUTH] == 0.0]))
         assert found.bound <= found.objective
+        gaps.append(gap_of(found))
     assert np.all(np.diff(gaps) < 0.0) and gaps[0] > 0.5 and gaps[-1] < 0.01
-    assert max(elsewhere) < 0.3
-    published = layer_solver.Settings(0.05, lip_bias="published")
+
+
+def test_the_face_is_kept_better_than_by_a_pull_to_m(model):
     rest = face(model, (np.arange(len(LAYER)) % 2 == 0).astype(float))
-    two = np.stack([rest, frame]), np.array([0.0, 1.0])
-    held = layer_solver.solve(model, published, *two)
-    moved = layer_solver.solve(model, settings._replace(temporal=0.05), *two)
-    errors = [
-        np.linalg.norm((composed(model, w, a) - frame)[MASKS[MOUTH] == 0.0])
-        for w, a in ((each.weights[1], each.coefficients[1]) for each in (held, moved))
-    ]
-    assert errors[1] < 0.5 * errors[0]
+    frames, errors = np.stack([rest, face(model, np.ones(len(LAYER)))]), {}
+    for bias in layer_solver.LIP_BIASES:
+        settings = layer_solver.Settings(0.05, lip_bias=bias)
+        found = layer_solver.solve(model, settings, frames, np.array([0.0, 1.0]))
+        assert gap_of(found)[1] < 0.05
+        shape = composed(model, found.weights[1], found.coefficients[1])
+        errors[bias] = np.linalg.norm(shape - frames[1])
+    assert errors["gap"] < 0.6 * min(errors["mouth"], errors["published"])
 
 
 def test_the_published_solver_closes_the_same_lips(model):
