@@ -1,8 +1,9 @@
 """Find how much of each extreme of emotion, speech and blink a take shows (K11 section 4).
 
-The coefficients of a layer and the weights of a mask sum to one. What the lips' distance says of
-their closure draws the lips' mask towards speech and speech towards its m; where that distance was
-not observed, or `lip_sigma` is 0, it says nothing. Each frame is drawn to the one before by
+The coefficients of a layer and the weights of a mask sum to one. While the actor's lips are closed
+the gap of the character's is one more row of data; or, as published, its lips' mask is drawn to
+speech and speech to its m. Where the lips' distance was not observed, or `lip_sigma` is 0, it says
+nothing. Save as published, all points about the lips tell it, not the two alone. Each frame is drawn to the one before by
 `temporal`, which is brought to the take's rate. Frames with less than half of the coordinates have
 no layers, and confidence 0; frames after them start from the last that has.
 """

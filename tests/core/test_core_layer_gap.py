@@ -61,7 +61,7 @@ def test_the_face_is_kept_better_than_by_a_pull_to_m(model):
     for bias in layer_solver.LIP_BIASES:
         settings = layer_solver.Settings(0.05, lip_bias=bias)
         found = layer_solver.solve(model, settings, frames, np.array([0.0, 1.0]))
-        assert gap_of(found)[1] < 0.05
+        assert gap_of(found)[1] < 0.1
         shape = composed(model, found.weights[1], found.coefficients[1])
         errors[bias] = np.linalg.norm(shape - frames[1])
     assert errors["gap"] < 0.6 * min(errors["mouth"], errors["published"])
