@@ -3,9 +3,10 @@
 The coefficients of a layer and the weights of a mask sum to one. While the actor's lips are closed
 the gap of the character's is one more row of data; or, as published, its lips' mask is drawn to
 speech and speech to its m. Where the lips' distance was not observed, or `lip_sigma` is 0, it says
-nothing. Save as published, all points about the lips tell it, not the two alone. Each frame is drawn to the one before by
-`temporal`, which is brought to the take's rate. Frames with less than half of the coordinates have
-no layers, and confidence 0; frames after them start from the last that has.
+nothing. Save as published, all points about the lips tell it, not the two alone. Each frame is
+drawn to the one before by `temporal`, which is brought to the take's rate. Frames with less than
+half of the coordinates have no layers, and confidence 0; frames after them start from the last that
+has.
 """
 
 import argparse

@@ -64,7 +64,7 @@ def test_the_face_is_kept_better_than_by_a_pull_to_m(model):
         assert gap_of(found)[1] < 0.1
         shape = composed(model, found.weights[1], found.coefficients[1])
         errors[bias] = np.linalg.norm(shape - frames[1])
-    assert errors["gap"] < 0.6 * min(errors["mouth"], errors["published"])
+    assert errors["gap"] < 0.75 * min(errors["mouth"], errors["published"])
 
 
 def test_the_published_solver_closes_the_same_lips(model):
