@@ -10,7 +10,7 @@ import numpy as np
 from stages.core import layer_model
 
 WEIGHT = 1.0
-SLACK = 1e-3
+SLACK = 0.02
 
 
 def closing(
@@ -19,8 +19,9 @@ def closing(
     """Add ``WEIGHT scale g / (1 - g) (sum_k u_lip,k gap_k)^2 / rms^2`` to a frame's data term.
 
     The ratio is that of the paper's eq. 7: at closeness one half an open lip costs as much as a
-    mean extreme under a mask, and lips that touch are closed whatever the data say. As rank one it
-    leaves the data term convex, so that bound and solver hold as they are.
+    mean extreme under a mask. `SLACK`, added to ``1 - g``, leaves lips that touch open by what
+    nobody sees; else an emotion whose pose is open by a hair would have to go. As rank one the term
+    leaves the data convex, so that bound and solver hold as they are.
 
     Parameters
     ----------

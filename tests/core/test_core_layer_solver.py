@@ -58,7 +58,7 @@ def cost(model, settings, frame, closeness, previous, weights, coefficients):
     lips += np.sum((coefficients - closed)[spoken] ** 2)
     if settings.lip_bias == "gap":
         gap = np.sum(weights[MOUTH][LAYER] * coefficients * GAPS)
-        lips = model.scale * gap**2 / np.mean(GAPS**2) / (1.001 - closeness)
+        lips = model.scale * gap**2 / np.mean(GAPS**2) / (1.02 - closeness)
     leant = settings.lean * np.sum((weights - moving_shares(model)) ** 2)
     change = 0.0
     if previous is not None:
