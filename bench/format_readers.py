@@ -55,13 +55,18 @@ def mdd(folder: Path) -> Found:
     return times, places.reshape(frames, points, 3).astype(float)
 
 
+def out_of_gltf(folder: Path) -> np.ndarray:
+    """Return what undoes the turn to y up and to metres (3, 3) of `mesh.glb`."""
+    said = _layout(folder)
+    turn = glb_against_exr.UPRIGHT[said["axes"]["up"]] * said["metres_per_unit"]
+    return np.linalg.inv(turn)
+
+
 def glb(folder: Path) -> Found:
     """Evaluate `mesh.glb` from its bytes; undo its turn to y up and its metres."""
-    said = _layout(folder)
     file = glb_against_exr.Glb(folder / "mesh.glb")
     times, keys = file.curves()
-    turn = glb_against_exr.UPRIGHT[said["axes"]["up"]] * said["metres_per_unit"]
-    back = np.linalg.inv(turn)
+    back = out_of_gltf(folder)
     found = [file.positions(frame, keys) @ back.T for frame in range(len(times))]
     return times, np.array(found)
 

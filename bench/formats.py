@@ -1,8 +1,10 @@
 """Write a take in every format, read each back by a reader that is not its writer, and compare.
 
-`python -m bench.formats results/takes/talk/human ... [--blender /path/to/python]` prints, for every
-format and reader, the worst distance of a vertex over all frames from the float64 mesh in units of
-the character's size, frames, and the last frame's time. Blender is any Python that has `bpy`.
+`python -m bench.formats results/takes/talk/human ...` prints, for every format and reader, the
+worst distance of a vertex over all frames from the float64 mesh in units of the character's size,
+frames, and the last frame's time. `--blender /path/to/python` adds
+Blender, any Python that has `bpy`; `--three node_modules/three` adds three.js, after `npm install
+three` in any folder, in the Chromium that `--chromium` names.
 Exit code 1 if a float format is off by more than 1e-5, a texture by more than it states, or a frame
 or time is lost.
 """
@@ -17,7 +19,7 @@ from pathlib import Path
 import numpy as np
 
 import stages
-from bench import float64_mesh, format_readers
+from bench import float64_mesh, format_readers, three_reader
 from stages import (
     bake_mesh,
     export_blender,
@@ -29,6 +31,7 @@ from stages import (
 from stages.files import rig
 
 TOLERANCE = 1e-5
+CHROMIUM = "chromium"
 TEMPLATES = Path(stages.__file__).parent / "templates"
 BLENDER = {
     "glb": "mesh.glb",
@@ -118,7 +121,22 @@ def blender_rows(python: str, folder: Path, rig_path: Path) -> list[tuple[str, P
     return [(name, folder / f"blender_{kind}.npz") for kind, name in BLENDER.items()]
 
 
-def check(take: Path, folder: Path, blender: str | None) -> bool:
+def three_row(
+    three: Path, chromium: str, folder: Path, truth: format_readers.Found
+) -> tuple[str, format_readers.Found]:
+    """Let three.js play the GLB; return its name and what it found."""
+    played = three_reader.play(folder / "mesh.glb", three, chromium, truth[0])
+    found = played.positions @ format_readers.out_of_gltf(folder).T
+    return f"three.js r{played.revision}", (played.times, found)
+
+
+def check(
+    take: Path,
+    folder: Path,
+    blender: str | None = None,
+    three: Path | None = None,
+    chromium: str = CHROMIUM,
+) -> bool:
     """Write and read one take; return whether all is well."""
     rig_path = float64_mesh.rig_of(take)
     write(folder, rig_path, take / "weights.parquet")
@@ -132,6 +150,9 @@ def check(take: Path, folder: Path, blender: str | None) -> bool:
         kind = name.removeprefix("texture.exr ")
         allowed = stated(folder / kind, size) if kind != name else TOLERANCE
         well &= compare((name, reader), read(folder), truth, allowed)
+    if three:
+        reader, found = three_row(three, chromium, folder, truth)
+        well &= compare(("mesh.glb", reader), found, truth, TOLERANCE)
     for name, path in blender_rows(blender, folder, rig_path) if blender else []:
         if path.is_file():
             read = np.load(path)
@@ -147,11 +168,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("takes", type=Path, nargs="+", help="folders of takes of a finished show")
     parser.add_argument("--blender", help="a Python with bpy, to read with Blender too")
+    parser.add_argument("--three", type=Path, help="a folder of three.js, to play the GLB with it")
+    parser.add_argument("--chromium", default=CHROMIUM, help="the browser that three.js runs in")
     options = parser.parse_args()
     well = True
     for take in options.takes:
         with tempfile.TemporaryDirectory() as folder:
-            well &= check(take.resolve(), Path(folder), options.blender)
+            chosen = options.blender, options.three, options.chromium
+            well &= check(take.resolve(), Path(folder), *chosen)
     raise SystemExit(0 if well else 1)
 
 

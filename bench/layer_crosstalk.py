@@ -1,9 +1,10 @@
 """How far emotion moves the curves of speech, and speech those of emotion.
 
-The same thing is played twice under different conditions, on the actress' measured basis as the
-solver takes it (`basis`), and by her face (`face`), whose markers and film points are no sum of
-extremes. Curves are what is delivered: u of a layer's columns, and what the layer makes of the clay
-head under each mask.
+The same thing is played twice under different conditions: composed on the actress' measured basis
+with weights that the solver can find, without noise (`no noise`) and with it (`basis`), or with the
+weights planted (`sums above one`), and by her face (`face`), whose markers and film points are no
+sum of extremes. Curves are what is delivered: u of a layer's columns, and what the layer makes of
+the clay head under each mask.
 """
 
 import contextlib
@@ -53,13 +54,20 @@ def table(take: layer_vignette.Take) -> list[str]:
     lines = [layer_vignette.row("", heads, 9, first=56)]
     ways = {
         "": How(lip_sigma=0.0),
-        ", lip bias": How(),
-        ", mask_variance": How(0.0, balance="mask_variance"),
-        ", markers": How(0.0, points="markers"),
-        ", markers, beyond 0.5": How(0.0, points="markers", beyond=0.5),
+        "; lip bias": How(),
+        "; variance": How(0.0, balance="variance"),
+        "; markers": How(0.0, points="markers"),
+        "; no lean": How(0.0, lean=0.0),
+        "; neither lean nor held": How(0.0, 0.0, lean=0.0),
     }
     body = layer_vignette.body(take, "clay_layers")
-    for title, plays in (("basis", on_basis(take)), ("face", by_face(take))):
+    shown = {
+        "no noise": on_basis(take, True, 0.0),
+        "basis": on_basis(take, True, 1.0),
+        "sums above one": on_basis(take, False, 1.0),
+        "face": by_face(take),
+    }
+    for title, plays in shown.items():
         for way, how in ways.items():
             found = {name: solved(take, offsets, how) for name, offsets in plays.items()}
             for layer, others in COMPARED.items():
@@ -97,14 +105,18 @@ def changes(take, body, layer: str, one: np.ndarray, other: np.ndarray) -> list[
     return cells
 
 
-def on_basis(take: layer_vignette.Take) -> dict:
-    """Return offsets composed of planted weights and coefficients on the measured basis."""
+def on_basis(take: layer_vignette.Take, normalised: bool, noise: float) -> dict:
+    """Return offsets composed of planted weights and coefficients on the measured basis.
+
+    As planted, emotion and speech in a talking mouth are 1.65 in sum; no weights on a simplex are.
+    """
     step = round(take.rate / RATE)
     names = list(take.truth["extreme_names"])
     order = [names.index("_".join(extreme)) for extreme in take.made.extremes]
     a = take.truth["coefficient"].astype(float)[::step, order]
     weights = take.truth["strength"].astype(float)[::step]
-    weights = weights / weights.sum(axis=2, keepdims=True)
+    if normalised:
+        weights = weights / weights.sum(axis=2, keepdims=True)
     layer, half = take.made.layer, len(a) // 2
     rolled = {
         name: np.where(layer == take.made.layers.index(name), np.roll(a, half, axis=0), a)
@@ -119,20 +131,19 @@ def on_basis(take: layer_vignette.Take) -> dict:
     tracks = {FIRST: a, "again": a, "calm": calm, "silent": silent}
     tracks |= {"other emotion": rolled["emotion"], "other words": rolled["speech"]}
     return {
-        name: _composed(take, weights, track, number)
+        name: _composed(take, weights, track) + noise * _noise(take, len(a), number)
         for number, (name, track) in enumerate(tracks.items())
     }
 
 
-def _composed(take, weights: np.ndarray, coefficients: np.ndarray, seed: int) -> np.ndarray:
-    """Return offsets (T, D) of layers on the measured basis, with noise."""
+def _composed(take, weights: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
+    """Return offsets (T, D) of layers on the measured basis."""
     made = take.made
     u = weights[:, :, made.layer] * coefficients[:, None]
-    exact = sum(
+    return sum(
         mask * (part @ made.basis.T)
         for mask, part in zip(made.mask_weights, np.moveaxis(u, 1, 0), strict=True)
     )
-    return exact + _noise(take, len(u), seed)
 
 
 def _noise(take, count: int, seed: int) -> np.ndarray:

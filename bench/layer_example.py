@@ -2,7 +2,7 @@
 
 The vignette holds four emotions with speech and blinks, planted in layers and played by a face. A
 word after the show runs one section alone: crosstalk, planted, rivals, closures, costs, motion,
-directed, beyond or balances. All together take about five minutes.
+directed, beyond or balances. All together take about three minutes.
 """
 
 import sys

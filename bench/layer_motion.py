@@ -27,7 +27,7 @@ def table(take: layer_vignette.Take) -> list[str]:
     true = [layer_vignette.displaced(body, take.planted) for body in bodies]
     cells = [jitter(moved, body, take.rate) for moved, body in zip(true, bodies, strict=True)]
     lines.append(layer_vignette.row("planted", cells, 11))
-    for balance in ("variance", "mask_variance"):
+    for balance in ("mask_variance", "variance"):
         for sigma in (0.02, 0.0):
             for strength in LAMBDAS:
                 how = layer_vignette.How(sigma, strength, balance=balance)

@@ -21,7 +21,7 @@ METHOD, SOLVE, SIGMA, SEED = "shared_residual", "tolerant_even", 0.1, 1
 
 
 def key_shapes(
-    take: layer_vignette.Take, masks: np.ndarray, faces: np.ndarray, counts
+    take: layer_vignette.Take, masks: np.ndarray, faces: np.ndarray, counts, kinds: str
 ) -> np.ndarray:
     """Return displacements (T, V, 3) [mm] of the clay head by key shapes chosen from `faces`.
 
@@ -32,13 +32,15 @@ def key_shapes(
     masks : (R, V) float array, of the head
     faces : (F, V, 3) float array [mm], the head's truth in `faces`
     counts : key shapes in each mask
+    kinds : the points that are seen, `both`, `markers` or `video`
     """
     made = take.made
     points = layer_points.read(take.show / "results/shots/faces/expression.parquet", made.driven_by)
     shown = layer_points.flat(points, made.layout)
+    seen_at = layer_vignette.coordinates(made, kinds)
     total = np.zeros((len(take.offsets), faces.shape[1], 3))
     for mask, weight, count in zip(made.mask_weights, masks, counts, strict=True):
-        own = mask > 0
+        own = (mask > 0) & seen_at
         scale = made.scale[own] * np.sqrt(mask[own])
         seen = shown[:, own] * scale
         whole = np.flatnonzero(np.isfinite(seen).all(axis=1))

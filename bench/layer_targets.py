@@ -16,6 +16,7 @@ def planted(take: layer_vignette.Take) -> list[str]:
     cases = {
         "as by default": How(),
         "no lip bias": How(lip_sigma=0.0),
+        "no lip bias, no lean": How(lip_sigma=0.0, lean=0.0),
         "no lip bias, beyond 0.3": How(lip_sigma=0.0, beyond=0.3),
         "nothing held (temporal 0)": How(lip_sigma=0.0, temporal=0.0),
     }
@@ -85,25 +86,27 @@ def rivals(take: layer_vignette.Take) -> list[str]:
     for label, how in {
         "layers": How(),
         "layers, no bias": How(lip_sigma=0.0),
-        "layers, no bias, beyond 0.3": How(lip_sigma=0.0, beyond=0.3),
+        "layers of markers, no bias": How(0.0, points="markers"),
+        "layers of markers, no bias, nothing held": How(0.0, 0.0, points="markers"),
     }.items():
         u = take.solve(how).u
-        made[label + ", the artist's poses"] = layer_vignette.displaced(body, u)
-        made[label + ", true poses"] = layer_vignette.displaced(ideal, u)
-    made["planted layers, artist's poses"] = layer_vignette.displaced(body, take.planted)
-    made["planted layers, true poses"] = layer_vignette.displaced(ideal, take.planted)
-    faces = np.load(take.show / "data_example/truth/faces.npz")["expression"]
-    for counts in layer_rivals.COUNTS:
-        label = "key shapes " + "/".join(map(str, counts))
-        made[label] = layer_rivals.key_shapes(take, body.masks, clay_truth(take, faces), counts)
-    made["rbf of capture's pairs"] = layer_rivals.rbf_network(take)
+        made[label + "; artist's poses"] = layer_vignette.displaced(body, u)
+        made[label + "; true poses"] = layer_vignette.displaced(ideal, u)
+    made["planted layers; artist's poses"] = layer_vignette.displaced(body, take.planted)
+    made["planted layers; true poses"] = layer_vignette.displaced(ideal, take.planted)
+    faces = clay_truth(take, np.load(take.show / "data_example/truth/faces.npz")["expression"])
+    for kinds in ("both", "markers"):
+        for counts in layer_rivals.COUNTS:
+            label = f"key shapes of {kinds}, " + "/".join(map(str, counts))
+            made[label] = layer_rivals.key_shapes(take, body.masks, faces, counts, kinds)
+    made["rbf of markers, pairs of capture"] = layer_rivals.rbf_network(take)
     talks, strong = layer_vignette.talking(take), exaggerated(take)
     lines = [layer_vignette.row("", ["all", *take.made.masks, "talking", "strong"])]
     for label, moved in made.items():
         found = layer_vignette.distance(body, moved, true)
         cells = [*found.mean(axis=0), found[talks, 0].mean(), found[strong, 0].mean()]
-        lines.append(layer_vignette.row(label, cells, first=42))
-    lines[0] = layer_vignette.row("", ["all", *take.made.masks, "talking", "strong"], first=42)
+        lines.append(layer_vignette.row(label, cells, first=58))
+    lines[0] = layer_vignette.row("", ["all", *take.made.masks, "talking", "strong"], first=58)
     return lines
 
 
@@ -115,9 +118,11 @@ def exaggerated(take: layer_vignette.Take) -> np.ndarray:
 def beyond(take: layer_vignette.Take) -> list[str]:
     """Return lines: errors with a soft bound on exaggerated frames and on all [mm]."""
     strong = exaggerated(take)
-    lines = [f"{strong.mean():.0%} of the frames are exaggerated"]
-    heads = [f"{part}{kind}" for kind in ("", " strong") for part in ("planted", "clay")]
-    lines.append(layer_vignette.row("", ["tort.", "tort. str.", *heads], width=15))
+    lines = [f"{strong.mean():.0%} of the frames are exaggerated (strong)"]
+    heads = [
+        f"{name}{kind}" for name in ("tortoise", "clay", "by expr.") for kind in ("", ", str.")
+    ]
+    lines.append(layer_vignette.row("", heads, width=15))
     clay, tortoise = (layer_vignette.body(take, name) for name in ("clay_layers", "tortoise"))
     ideal = true_poses(take, clay)
     by_expression = clay_truth(take, take.truth["expression"])
@@ -131,10 +136,9 @@ def beyond(take: layer_vignette.Take) -> list[str]:
                 (ideal, by_expression),
             ):
                 found = layer_vignette.distance(body, layer_vignette.displaced(body, u), true)[:, 0]
-                cells.append((found.mean(), found[strong].mean()))
-            (a, b), (c, d), (e, f) = cells
+                cells += [found.mean(), found[strong].mean()]
             label = f"bias {'on' if sigma else 'off'}, beyond {how_far:g}"
-            lines.append(layer_vignette.row(label, [a, b, c, e, d, f], width=15))
+            lines.append(layer_vignette.row(label, cells, width=15))
     return lines
 
 
@@ -148,7 +152,7 @@ def balances(take: layer_vignette.Take) -> list[str]:
         (ideal, clay_truth(take, take.truth["expression"])),
     )
     heads = ["tortoise", "clay", "clay by expr."]
-    lines = [layer_vignette.row("no lip bias, as by default: ", heads * 2, width=14)]
+    lines = [layer_vignette.row("no lip bias; then with it", heads * 2, width=14)]
     for points in ("markers", "video", "both"):
         for rule in coordinate_balance.RULES:
             cells = []

@@ -23,18 +23,19 @@ from stages.files import layer_points, lip_gap, rig, simplices
 SHOT, ACTOR = "vignette", "mia"
 CHARACTERS = ("clay_layers", "tortoise", "globe", "cassette")
 MOVES_MM = 0.1
-LIP_MARKERS = "MULP,MLLP"
+LIP_MARKERS, UNIT_MARKERS = "MULP,MLLP", ("RECO", "LECO")
 
 
 class How(NamedTuple):
-    """Say how layers are solved: columns of characters.tsv, and which points are seen."""
+    """Say how layers are solved, as characters.tsv does, and which points are seen."""
 
     lip_sigma: float = 0.02
     temporal: float = 0.05
     beyond: float = 0.0
-    balance: str = "variance"
+    balance: str = "mask_variance"
     points: str = "both"
-    lips_yield: str = "face"
+    lips_yield: str = "mouth"
+    lean: float = 0.03
     lips: str = "film"
 
 
@@ -57,7 +58,8 @@ class Take:
     show : folder of the show
     made : what actor and characters share; all characters of the example share the same
     offsets : (T, D) float array [face units]
-    gaps : of the lips by `film`, `markers` or `truth`, (T,) float array less the closed gap
+    gaps : of the lips by `film`, `markers`, `either` or `truth`, less that of closed ones, (T,)
+        float arrays [face units]
     rate : frames per second
     truth : what the generator knows, by name
     lips_apart : (2,) float array [face units], from the lower lip to the upper in the neutral
@@ -162,7 +164,11 @@ def _gaps(show: Path, made: simplices.Simplices, truth: dict) -> dict[str, np.nd
     known = np.isfinite(found["film"])
     opening = truth["opening_mm"].astype(float)
     unit = (opening[known] @ opening[known]) / (opening[known] @ found["film"][known])
-    return found | {"truth": opening / unit}
+    # markers have a larger face unit; lips that either shows closed are closed
+    ends = [truth["marker_neutral"][list(truth["marker_names"]).index(n)] for n in UNIT_MARKERS]
+    by_markers = found["markers"] * np.linalg.norm(ends[1] - ends[0]) / unit
+    either = np.fmin(found["film"], by_markers)
+    return found | {"truth": opening / unit, "either": either}
 
 
 def planted(take: Take) -> np.ndarray:
@@ -181,11 +187,8 @@ def solve(
     made: simplices.Simplices, offsets: np.ndarray, gap: np.ndarray, rate: float, how: How
 ) -> Solved:
     """Solve offsets (T, D) as the stage does; the gap (T,) of the lips is less that of closed."""
-    group = layer_points.group_of(made.layout)
-    kinds = [each.kind for each in made.layout]
-    wanted = layer_points.KINDS[how.points]
-    own = np.isin(group, [kinds.index(kind) for kind in wanted])
-    numbers = np.unique(group[own], return_inverse=True)[1]
+    own = coordinates(made, how.points)
+    numbers = np.unique(layer_points.group_of(made.layout)[own], return_inverse=True)[1]
     basis, masks = made.basis[own], made.mask_weights[:, own]
     scale = coordinate_balance.factors(basis, numbers, masks, how.balance)
     gamma = np.zeros(len(offsets))
@@ -193,14 +196,19 @@ def solve(
         gamma = lip_closeness.closeness(gap, 0.0, how.lip_sigma)
     lips = simplices.lip_indices(made) if gamma.any() else (-1, -1, -1)
     model = layer_model.build(basis * scale[:, None], made.layer, masks, *lips)
-    settings = layer_solver.Settings(
-        layer_solver.temporal_at(rate, how.temporal), how.beyond, how.lips_yield
-    )
+    temporal = layer_solver.temporal_at(rate, how.temporal)
+    settings = layer_solver.Settings(temporal, how.beyond, how.lips_yield, how.lean)
     found = layer_solver.solve(model, settings, offsets[:, own] * scale, gamma)
     u = layer_composition.displacements(
         made.layer, found.weights, found.coefficients, found.amplitudes
     )
     return Solved(found.weights, found.coefficients, found.amplitudes, u, gamma)
+
+
+def coordinates(made: simplices.Simplices, points: str) -> np.ndarray:
+    """Return which coordinates (D,) belong to `markers`, `video` or `both`."""
+    kinds = np.array([each.kind for each in made.layout])
+    return np.isin(kinds[layer_points.group_of(made.layout)], layer_points.KINDS[points])
 
 
 def body(take: Take, name: str) -> Body:

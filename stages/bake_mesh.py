@@ -55,11 +55,6 @@ def _form(played: take.Take) -> dict:
     }
 
 
-def _start(played: take.Take) -> dict:
-    """Return what the JSON says of the first frame's timecode."""
-    return {"start_timecode": played.first_timecode} if played.first_timecode else {}
-
-
 def _pruned(
     surface: gltf.Surface, weights: np.ndarray, scale: np.ndarray, most: int, size: float
 ) -> tuple[np.ndarray, dict]:
@@ -107,10 +102,11 @@ def main(argv: Sequence[str]) -> None:
             surface, sides.weights, played.motion.scale, options.most_targets, size
         )
         bounds = np.stack([low, high])
-        form = _form(played) | said | _start(played)
+        form = _form(played) | said | played.start
         exr.write_json(paths[1], vertices, frames, first, played.rate, bounds, form)
         motion = played.motion._replace(weights=stay)
-        gltf.write(paths[3], character, surface, motion, played.frame, played.rate)
+        clock = played.frame, played.rate, played.start
+        gltf.write(paths[3], character, surface, motion, *clock)
 
 
 if __name__ == "__main__":

@@ -38,6 +38,7 @@ def main(argv: Sequence[str]) -> None:
         "pivot": character.pivot.tolist(),
         "curves": take_script.curves(character.names, played.frame, motion.weights),
         "head": [[float(f"{value:.9g}") for value in row] for row in head],
+        **played.start,
     }
     with atomic.replacing(options.script) as temporary:
         take_script.write(temporary, options.template, data)

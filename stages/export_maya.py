@@ -50,6 +50,7 @@ def main(argv: Sequence[str]) -> None:
         "pivot": character.pivot.tolist(),
         "curves": take_script.curves(character.names, frame, played.motion.weights),
         "head": take_script.curves(channels, frame, _head(played)),
+        **played.start,
     }
     plain = [name.replace(".", "_") for name in character.names]
     with atomic.replacing(options.script) as script, atomic.replacing(options.anim) as anim:

@@ -30,7 +30,7 @@ def main(argv: Sequence[str]) -> None:
         for index in range(baked.frames):
             write(baked.first_frame + index, baked.frame(index))
             progress.step()
-        clock = baked.first_frame, baked.frames, baked.rate
+        clock = baked.first_frame, baked.frames, baked.rate, baked.start
         obj_sequence.write_json(folder / "take.json", character, *clock)
 
 

@@ -141,6 +141,7 @@ def _description(
         "fps_num": baked.rate.numerator,
         "fps_den": baked.rate.denominator,
         "first_frame": baked.first_frame,
+        **baked.start,
         "axes": {"up": "z" if options.layout == OPENVAT else character.up_axis},
         "unit": character.unit,
         "metres_per_unit": rig.METRES[character.unit],

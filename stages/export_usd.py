@@ -26,7 +26,7 @@ def main(argv: Sequence[str]) -> None:
     progress = cli.Progress("export", len(played.frame))
     boxes = []
     with atomic.replacing(options.points) as points, atomic.replacing(options.usd) as shapes:
-        clock = played.frame, played.rate
+        clock = played.frame, played.rate, played.start
         with usd_points.writer(points, played.character, *clock) as append:
             for positions in take.positions(played, options.weights):
                 append(positions)

@@ -11,6 +11,7 @@ from stages.core import (
     compose,
     douglas_peucker,
     key_removal,
+    keyed_curves,
     local_shapes,
     mesh_error,
     target_pruning,
@@ -18,9 +19,11 @@ from stages.core import (
 
 # the first thinning spends this share of the tolerance, the removal one by one the rest
 START = 0.25
-ROUNDS = 4
+ROUNDS = 6
 # vertices that a round adds to the watched
 WATCHED = 48
+# what is put right stays below the tolerance by more than sums differ in another order
+NEAR = 1 - 1e-9
 
 
 def reduce(
@@ -60,16 +63,19 @@ def reduce(
     reach = target_pruning.reach(shapes)
     # a channel that moves nothing may be anything: its tolerance is without limit
     share = np.divide(START * tolerance, reach, out=np.full(count, np.inf), where=reach > 0)
-    removal = key_removal.Removal(values, thinned(values, share), reach)
-    watched = _most_often(mesh_error.worst(parts, removal.wrong)[1])
-    _put_back(removal, parts, shapes, tolerance)
+    curves = keyed_curves.KeyedCurves(values, thinned(values, share))
+    removal = key_removal.Removal(curves, reach)
+    watched = _most_often(mesh_error.worst(parts, curves.wrong.T)[1])
+    _settle(curves, local_shapes.at(shapes, watched), np.arange(len(values)), tolerance)
     for _ in range(ROUNDS):
+        before = curves.kept.sum()
         removal.run(local_shapes.at(shapes, watched), tolerance)
-        found = _put_back(removal, parts, shapes, tolerance)
-        if not len(found):
+        removed = before - curves.kept.sum()
+        worst, found = _put_back(curves, parts, shapes, tolerance)
+        if not len(found) and not removed:
             break
-        watched = np.union1d(watched, _most_often(found))
-    return removal.kept, float(mesh_error.worst(parts, removal.wrong)[0].max())
+        watched = np.concatenate([watched, np.setdiff1d(_most_often(found), watched)])
+    return curves.kept.T, worst
 
 
 def _most_often(vertices: np.ndarray) -> np.ndarray:
@@ -89,36 +95,68 @@ def thinned(values: np.ndarray, tolerance: np.ndarray) -> np.ndarray:
 def error(values: np.ndarray, kept: np.ndarray) -> np.ndarray:
     """Return lines between keys (T, K) less their curves (T, K)."""
     channels = zip(values.T, kept.T, strict=True)
-    return np.stack([key_removal.error(curve, rows) for curve, rows in channels], axis=1)
+    return np.stack([keyed_curves.error(curve, rows) for curve, rows in channels], axis=1)
 
 
 def _put_back(
-    removal: key_removal.Removal,
+    curves: keyed_curves.KeyedCurves,
     parts: list[compose.Block],
     shapes: local_shapes.LocalShapes,
     tolerance: float,
-) -> np.ndarray:
-    """Put keys back until the bound holds at all vertices; return the vertices that broke it.
+) -> tuple[float, np.ndarray]:
+    """Put keys back until the bound holds at all vertices.
 
-    A frame at which all channels are keys has no error, so this ends.
+    A frame at which all channels are keys has no error, so this ends. Only frames at which errors
+    changed are looked at again, first at those vertices that broke the bound anywhere.
+
+    Returns
+    -------
+    float
+        the largest displacement [character's unit]
+    (N,) int array
+        the vertices that broke the bound, one for each frame that they did it at
     """
-    found = []
-    while True:
-        largest, vertex = mesh_error.worst(parts, removal.wrong)
-        broken = np.flatnonzero(largest > tolerance)
-        if not len(broken):
-            return np.array(found, int)
-        found += vertex[broken].tolist()
-        for frame, deltas in zip(
-            broken, local_shapes.at(shapes, vertex[broken]).swapaxes(0, 1), strict=True
-        ):
-            _free(removal, int(frame), deltas, tolerance)
+    largest, vertex = mesh_error.worst(parts, curves.wrong.T)
+    found = [vertex[largest > tolerance]]
+    while len(rows := np.flatnonzero(largest > tolerance)):
+        suspects = local_shapes.at(shapes, np.unique(found[-1]))
+        rows = _settle(curves, suspects, rows, tolerance)
+        largest[rows], vertex[rows] = mesh_error.worst(parts, curves.wrong.T[rows])
+        found.append(vertex[rows][largest[rows] > tolerance])
+    return float(largest.max()), np.concatenate(found)
 
 
-def _free(removal: key_removal.Removal, frame: int, deltas: np.ndarray, tolerance: float) -> None:
-    """Make those channels keys that move a vertex most, until it is near; deltas are (K, D)."""
-    moved = np.inf
-    while np.linalg.norm(moved) > tolerance:
-        parts = removal.wrong[frame][:, None] * deltas
-        removal.insert(int((parts @ parts.sum(axis=0)).argmax()), frame)
-        moved = removal.wrong[frame] @ deltas
+def _settle(
+    curves: keyed_curves.KeyedCurves, deltas: np.ndarray, rows: np.ndarray, tolerance: float
+) -> np.ndarray:
+    """Put keys back until the bound holds at some vertices, deltas (K, n, D).
+
+    Takes the frames to look at, returns those at which errors changed.
+    """
+    changed = np.zeros(curves.values.shape[1], bool)
+    while len(rows):
+        moved = np.tensordot(curves.wrong.T[rows], deltas, axes=1)
+        squares = np.einsum("tnd,tnd->tn", moved, moved)
+        place = squares.argmax(axis=1)
+        broken = squares[np.arange(len(rows)), place] > (NEAR * tolerance) ** 2
+        now = np.zeros(len(changed), bool)
+        for frame, worst in zip(rows[broken], place[broken], strict=True):
+            for low, high in _free(curves, int(frame), deltas[:, worst], NEAR * tolerance):
+                now[low : high + 1] = True
+        rows = np.flatnonzero(now)
+        changed |= now
+    return np.flatnonzero(changed)
+
+
+def _free(
+    curves: keyed_curves.KeyedCurves, frame: int, deltas: np.ndarray, tolerance: float
+) -> list[tuple[int, int]]:
+    """Make those channels keys that move a vertex most, until it is near; deltas are (K, D).
+
+    Returns the spans of frames at which errors became others.
+    """
+    spans = []
+    while np.linalg.norm(curves.wrong[:, frame] @ deltas) > tolerance:
+        parts = curves.wrong[:, frame][:, None] * deltas
+        spans.append(curves.insert(int((parts @ parts.sum(axis=0)).argmax()), frame))
+    return spans

@@ -149,6 +149,8 @@ class Reader:
         self.vertices, self.blocks = description["vertices"], description["blocks"]
         self.frames, self.first_frame = description["frames"], description["first_frame"]
         self.rate = Fraction(description["fps_num"], description["fps_den"])
+        known = description.get("start_timecode")
+        self.start = {"start_timecode": known} if isinstance(known, str) else {}
         try:
             self._file = OpenEXR.InputFile(str(path))
         except OSError as error:

@@ -1,8 +1,10 @@
 """Rigs of one GLB file: a mesh and its morph targets.
 
-The mesh's own space is kept: transforms of nodes (where a scene puts the mesh, or what undoes a
-quantisation) are not applied, only said. The primitives of the mesh are joined in their order;
-those that share their vertices, as materials on one surface do, have them once.
+The space of a mesh that has morph targets alone is kept: transforms of nodes (where a scene puts
+the mesh, or what undoes a quantisation) are not applied, only said. Its primitives are joined in
+their order; those that share their vertices, as materials on one surface do, have them once.
+Several meshes with morph targets, such as a head with teeth and eyes of their own, become one in
+the space of the scene, and targets of one name become one shape.
 """
 
 import dataclasses
@@ -14,7 +16,7 @@ import numpy as np
 import pygltflib as gltf
 
 from stages.core import local_shapes, srgb
-from stages.files import errors, glb, sculpts
+from stages.files import errors, glb, glb_nodes, sculpts
 
 MOST_TARGETS = 4096
 POINT, COLOUR = [gltf.VEC3], [gltf.VEC3, gltf.VEC4]
@@ -45,27 +47,49 @@ class GlbRig:
 
 
 def read(path: str | Path) -> GlbRig:
-    """Read a mesh with morph targets.
+    """Read a mesh with morph targets, or join several.
 
     Raises
     ------
     errors.InputError
-        if the file is damaged, compressed, or does not hold one mesh with morph targets
+        if the file is damaged, compressed, holds no mesh with morph targets, or several that cannot
+        be joined without a guess
     """
     file = glb.read(path)
-    number, mesh = _morphed(file)
+    meshes = _morphed(file)
+    if len(meshes) == 1:
+        ((number, mesh),) = meshes.items()
+        made = _one(file, mesh)
+        return dataclasses.replace(made, notes=made.notes + _moved(file, number) + _resting(mesh))
+    places = glb_nodes.placed(file, list(meshes))
+    for number, mesh in meshes.items():
+        if "targetNames" not in (mesh.extras if isinstance(mesh.extras, dict) else {}):
+            message = f"has {len(meshes)} meshes with morph targets, mesh {number} without names"
+            cure = "name its shapes (targetNames), or join the meshes into one"
+            raise errors.InputError(path, f"{message} of them: {cure}")
+    return _joined(file, [(meshes[number], matrix) for number, matrix in places])
+
+
+def _one(file: glb.Glb, mesh: gltf.Mesh) -> GlbRig:
+    """Read one mesh in its own space."""
     parts = mesh.primitives
     counts = {len(part.targets or []) for part in parts}
     if len(counts) > 1:
         message = f"its primitives have {sorted(counts)} morph targets, expected as many each"
-        raise errors.InputError(path, f"{message}: {glb.AGAIN}")
+        raise errors.InputError(file.path, f"{message}: {glb.AGAIN}")
     (count,) = counts
     if count > MOST_TARGETS:
         message = f"has {count} morph targets, at most {MOST_TARGETS} are read: leave some out"
-        raise errors.InputError(path, message)
+        raise errors.InputError(file.path, message)
     names, notes = _names(file, mesh, count)
     bases, vertices, triangles, colours = _surfaces(file, parts)
-    neutral = sculpts.Pose(
+    deltas = local_shapes.gather(_deltas(file, list(bases.values()), count))
+    return GlbRig(_pose(vertices, triangles, colours), names, deltas, notes)
+
+
+def _pose(vertices: np.ndarray, triangles: np.ndarray, colours: np.ndarray) -> sculpts.Pose:
+    """Return a mesh of triangles as a pose."""
+    return sculpts.Pose(
         names=[str(vertex) for vertex in range(len(vertices))],
         coordinates=vertices,
         sizes=np.full(len(triangles), 3, np.int32),
@@ -73,22 +97,69 @@ def read(path: str | Path) -> GlbRig:
         colours=colours,
         is_controls=False,
     )
-    deltas = local_shapes.gather(_deltas(file, list(bases.values()), count))
-    return GlbRig(neutral, names, deltas, notes + _moved(file, number) + _resting(mesh))
 
 
-def _morphed(file: glb.Glb) -> tuple[int, gltf.Mesh]:
-    """Return the one mesh that has morph targets, and its number."""
-    meshes = [(i, mesh) for i, mesh in enumerate(file.document.meshes or []) if mesh is not None]
-    found = [(i, m) for i, m in meshes if any(part.targets for part in m.primitives or [])]
+def _joined(file: glb.Glb, placed: list[tuple[gltf.Mesh, np.ndarray]]) -> GlbRig:
+    """Read meshes and join them in the scene's space, where matrices (4, 4) put them."""
+    made, vertices, triangles, colours = [], [], [], []
+    for mesh, matrix in placed:
+        one = _one(file, mesh)
+        made.append((one, sum(map(len, vertices)), matrix[:3, :3]))
+        vertices.append(one.neutral.coordinates @ matrix[:3, :3].T + matrix[:3, 3])
+        corners = one.neutral.corners.reshape(-1, 3) + made[-1][1]
+        # a mirror turns the surface inside out
+        triangles.append(corners[:, ::-1] if np.linalg.det(matrix[:3, :3]) < 0 else corners)
+        if len(one.neutral.colours):
+            colours.append(one.neutral.colours)
+        size = sum(map(len, vertices)) + sum(len(part.deltas.vertices) for part, *_ in made)
+        if size > file.path.stat().st_size:
+            message = "its meshes together move more vertices than the file can hold"
+            raise errors.InputError(file.path, f"{message}: {glb.AGAIN}")
+    neutral = _pose(
+        np.concatenate(vertices),
+        np.concatenate(triangles),
+        np.concatenate(colours if len(colours) == len(made) else [np.zeros((0, 3))]),
+    )
+    _check_finite(file, neutral.coordinates, "the joined mesh")
+    names = list(dict.fromkeys(name for one, *_ in made for name in one.names))
+    if len(names) > MOST_TARGETS:
+        message = f"has {len(names)} morph targets, at most {MOST_TARGETS} are read"
+        raise errors.InputError(file.path, f"{message}: leave some out")
+    called = ", ".join(str(mesh.name or "unnamed") for mesh, _ in placed)
+    notes = [f"{len(made)} meshes are joined as the scene puts them: {called:.200}"]
+    notes += [note for one, *_ in made for note in one.notes]
+    notes += [note for mesh, _ in placed for note in _resting(mesh)]
+    deltas = _merged(made, names, len(neutral.coordinates))
+    return GlbRig(neutral, names, local_shapes.gather(deltas), notes)
+
+
+def _merged(
+    made: list[tuple[GlbRig, int, np.ndarray]], names: list[str], count: int
+) -> Iterator[np.ndarray]:
+    """Yield the differences (V, 3) of each name over all meshes; each stands from a vertex on."""
+    places = [{name: shape for shape, name in enumerate(one.names)} for one, *_ in made]
+    for name in names:
+        delta = np.zeros((count, 3))
+        for (one, start, linear), shapes in zip(made, places, strict=True):
+            if name in shapes:
+                shape = shapes[name]
+                rows = slice(one.deltas.first[shape], one.deltas.first[shape + 1])
+                delta[start + one.deltas.vertices[rows]] = one.deltas.values[rows] @ linear.T
+        yield delta
+
+
+def _morphed(file: glb.Glb) -> dict[int, gltf.Mesh]:
+    """Return the meshes that have morph targets, by their numbers."""
+    meshes = {i: mesh for i, mesh in enumerate(file.document.meshes or []) if mesh is not None}
+    found = {
+        number: mesh
+        for number, mesh in meshes.items()
+        if any(part.targets for part in mesh.primitives or [])
+    }
     if not found:
         message = "has no morph targets: export the mesh with its shape keys, or an OBJ each shape"
         raise errors.InputError(file.path, message)
-    if len(found) > 1:
-        names = ", ".join(str(mesh.name or number) for number, mesh in found[:8])
-        message = f"has {len(found)} meshes with morph targets ({names:.80}): join them into one"
-        raise errors.InputError(file.path, message)
-    return found[0]
+    return found
 
 
 def _attribute(attributes: object, name: str) -> object:

@@ -6,11 +6,12 @@ animated weights). Below `character`, evaluating gives exactly the positions of 
 One morph target for each shape that is not zero under its mask, and a second, `<name>.minus`, where
 its weight goes below zero; scaled so that weights stay within 0 and 1, since packages clamp them
 (`mesh.extras.gains` says by how much). Targets are sparse accessors, their names stand in
-`mesh.extras.targetNames`, rate and first frame in `animations[0].extras`. Vertices are the file's,
-one to one; polygons are cut into fans.
+`mesh.extras.targetNames`, rate, first frame and its timecode in `animations[0].extras`. Vertices
+are the file's, one to one; polygons are cut into fans.
 """
 
 import dataclasses
+from collections.abc import Mapping
 from fractions import Fraction
 from pathlib import Path
 
@@ -119,6 +120,7 @@ def write(
     motion: take_motion.TakeMotion,
     frame: np.ndarray,
     rate: Fraction,
+    start: Mapping[str, str] | None = None,
 ) -> None:
     """Write a moving character.
 
@@ -130,6 +132,7 @@ def write(
     motion : how it moves; weights (T, M) of the morph targets
     frame : (T,) int array, numbers of the frames
     rate : frames per second
+    start : what else is said of the first frame, such as its timecode
     """
     buffer = _Buffer()
     moved = _float32(surface.targets)
@@ -140,7 +143,7 @@ def write(
         nodes=_nodes(character, motion),
         meshes=[_mesh(buffer, character, surface, [moved[row] for row in used], used)],
         materials=[_material()],
-        animations=[_animation(buffer, character, motion, used, frame, rate)],
+        animations=[_animation(buffer, character, motion, used, frame, rate, start or {})],
     )
     document.accessors, document.bufferViews = buffer.accessors, buffer.views
     document.buffers = [gltf.Buffer(byteLength=len(buffer.data))]
@@ -226,6 +229,7 @@ def _animation(
     used: np.ndarray,
     frame: np.ndarray,
     rate: Fraction,
+    start: Mapping[str, str],
 ) -> gltf.Animation:
     """Return the animation: three channels of the head, one of weights."""
     times = buffer.dense(frame * rate.denominator / rate.numerator)
@@ -251,4 +255,4 @@ def _animation(
         "first_frame": int(frame[0]),
         "frames": len(frame),
     }
-    return gltf.Animation(name="take", samplers=samplers, channels=channels, extras=clock)
+    return gltf.Animation(name="take", samplers=samplers, channels=channels, extras=clock | start)

@@ -11,6 +11,7 @@ from pathlib import Path
 from stages.files import errors
 
 MIN_CORNERS = 3
+MOST_VERTICES = 2**31
 
 
 def read(path: Path) -> tuple[list, list, list, list]:
@@ -83,5 +84,8 @@ def _polygon(path: Path, number: int, line: str, count: int) -> list[int]:
     indices = [index - 1 if index > 0 else count + index for index in named]
     if min(indices) < 0:
         message = f"line {number}: '{line}' names a vertex above the first: export again"
+        raise errors.InputError(path, message)
+    if max(indices) >= MOST_VERTICES:
+        message = f"line {number}: '{line:.80}' names a vertex beyond the last: export again"
         raise errors.InputError(path, message)
     return indices

@@ -6,7 +6,7 @@ fps_den, first_frame, frames, unit, metres_per_unit, up_axis and vertex_hash.
 """
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from pathlib import Path
 
@@ -44,7 +44,12 @@ def face_lines(sizes: np.ndarray, corners: np.ndarray, textured: bool = False) -
 
 
 def write_json(
-    path: Path, character: rig.Rig, first_frame: int, frames: int, rate: Fraction
+    path: Path,
+    character: rig.Rig,
+    first_frame: int,
+    frames: int,
+    rate: Fraction,
+    start: Mapping[str, str],
 ) -> None:
     """Write the clock and form of a sequence."""
     description = {
@@ -56,5 +61,6 @@ def write_json(
         "metres_per_unit": rig.METRES[character.unit],
         "up_axis": character.up_axis,
         "vertex_hash": rig.vertex_hash(character),
+        **start,
     }
     path.write_text(json.dumps(description, indent=2) + "\n", encoding="utf-8")

@@ -35,9 +35,11 @@ def read(path: str | Path, kind: str | Sequence[str]) -> tuple[pa.Table, dict]:
     """
     try:
         table = pq.read_table(path)
-    except pa.ArrowInvalid as error:
-        message = f"no Parquet file ({error}): delete it and run again"
+        header = json.loads((table.schema.metadata or {}).get(META_KEY, b"{}"))
+    except FileNotFoundError:
+        raise
+    except (pa.ArrowException, OSError, ValueError) as error:
+        message = f"no Parquet file ({str(error).splitlines()[0]}): delete it and run again"
         raise errors.InputError(path, message) from error
-    header = json.loads((table.schema.metadata or {}).get(META_KEY, b"{}"))
     provenance.check(path, header, kind)
     return table, header

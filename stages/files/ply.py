@@ -8,6 +8,7 @@ import numpy as np
 
 from stages.files import errors
 
+MOST_VERTICES = 2**31
 TYPES = {
     "char": "i1",
     "int8": "i1",
@@ -46,17 +47,21 @@ def read(path: Path) -> tuple[np.ndarray, list, list, np.ndarray]:
     source = io.StringIO(body.decode("ascii", "replace")) if order is None else io.BytesIO(body)
     vertices, colours, sizes, corners = np.zeros((0, 3)), np.zeros((0, 3)), [], []
     for element in elements:
+        # a row takes a byte at least: a count beyond that would only fill the memory
+        if not 0 <= element.count <= len(body):
+            message = f"element {element.name} is cut short: it promises {element.count} rows"
+            raise errors.InputError(path, f"{message} in {len(body)} bytes: export again")
         try:
             rows = _rows(source, element, order)
-        except (ValueError, IndexError, TypeError) as error:
+            if element.name == "vertex":
+                vertices, colours = _vertices(path, element, rows)
+            elif element.name == "face":
+                sizes, corners = _polygons(path, element, rows)
+        except errors.InputError:
+            raise
+        except (ValueError, IndexError, TypeError, OverflowError) as error:
             message = f"element {element.name} is cut short or damaged ({error}): export again"
             raise errors.InputError(path, message) from None
-        if element.name == "vertex":
-            vertices, colours = _vertices(path, element, rows)
-        elif element.name == "face":
-            polygons = [row[_column(path, element, "vertex_ind")] for row in rows]
-            sizes = [len(polygon) for polygon in polygons]
-            corners = [int(index) for polygon in polygons for index in polygon]
     return vertices, sizes, corners, colours
 
 
@@ -124,6 +129,8 @@ def _binary_row(source: io.BytesIO, element: Element, order: str) -> list:
 
 def _take(source: io.BytesIO, kind: str, count: int) -> np.ndarray:
     """Read `count` numbers of one type."""
+    if count < 0:
+        raise ValueError(f"a list of {count} numbers")
     return np.frombuffer(source.read(np.dtype(kind).itemsize * count), kind, count)
 
 
@@ -134,6 +141,16 @@ def _column(path: Path, element: Element, name: str) -> int:
         if found.startswith(name):
             return index
     raise errors.InputError(path, f"element {element.name} has no property {name}: export again")
+
+
+def _polygons(path: Path, element: Element, rows: list) -> tuple[list, list]:
+    """Return the number of corners of each polygon, and the corners of all."""
+    column = _column(path, element, "vertex_ind")
+    polygons = [row[column] for row in rows]
+    corners = [int(index) for polygon in polygons for index in polygon]
+    if corners and max(corners) >= MOST_VERTICES:
+        raise ValueError(f"it names vertex {max(corners)}")
+    return [len(polygon) for polygon in polygons], corners
 
 
 def _vertices(path: Path, element: Element, rows: list) -> tuple[np.ndarray, np.ndarray]:

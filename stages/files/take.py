@@ -34,6 +34,11 @@ class Take:
     time_s: np.ndarray
     first_timecode: str
 
+    @property
+    def start(self) -> dict[str, str]:
+        """What files say of the first frame: its timecode, where it is known."""
+        return {"start_timecode": self.first_timecode} if self.first_timecode else {}
+
 
 def read(rig_path: str | Path, weights_path: str | Path) -> Take:
     """Read a take.

@@ -2,13 +2,14 @@
 
 `/character` is the default prim. Time codes are frame numbers, so a frame is exact at any rate;
 `timeCodesPerSecond` is the rate, `startTimeCode` and `endTimeCode` are the first and last frame.
-`customLayerData` holds `keyface`: fps_num, fps_den, first_frame, frames, unit and vertex_hash.
+`customLayerData` holds `keyface`: fps_num, fps_den, first_frame, frames, unit, vertex_hash
+and, where it is known, start_timecode.
 Coordinates are the character's own; `upAxis` and `metersPerUnit` say what they mean. Meshes have no
 subdivision and no normals: viewers find smooth ones from the points as they move.
 """
 
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from pathlib import Path
 
@@ -24,7 +25,11 @@ ROOT = "/character"
 
 @contextlib.contextmanager
 def stage(
-    path: str | Path, character: rig.Rig, frame: np.ndarray, rate: Fraction
+    path: str | Path,
+    character: rig.Rig,
+    frame: np.ndarray,
+    rate: Fraction,
+    start: Mapping[str, str] | None = None,
 ) -> Iterator[Usd.Stage]:
     """Yield a stage with a root prim, axes, unit and clock; save it at the end.
 
@@ -34,6 +39,7 @@ def stage(
     character : the rig of a mesh
     frame : (T,) int array
     rate : frames per second
+    start : what else is said of the first frame, such as its timecode
     """
     if Path(path).suffix not in SUFFIXES:
         message = f"'{Path(path).suffix}' is none of {', '.join(SUFFIXES)}: name it so"
@@ -56,6 +62,7 @@ def stage(
             "frames": len(frame),
             "unit": character.unit,
             "vertex_hash": rig.vertex_hash(character),
+            **(start or {}),
         }
     }
     yield made

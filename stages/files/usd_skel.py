@@ -15,6 +15,7 @@ UsdSkel has half floats for that: with `H(x) = pivot + s R (x - pivot) + f t`, t
 and moves by f t / s, and `/character` scales by s about the pivot.
 """
 
+from collections.abc import Mapping
 from fractions import Fraction
 from pathlib import Path
 
@@ -37,6 +38,7 @@ def write(
     boxes: np.ndarray,
     frame: np.ndarray,
     rate: Fraction,
+    start: Mapping[str, str] | None = None,
 ) -> None:
     """Write a moving character.
 
@@ -56,7 +58,7 @@ def write(
     names = [character.names[shape] for shape in sides.shape]
     minus = ["_minus" if gain < 0 else "" for gain in sides.gain]
     prims = usd.prim_names([names[row] + minus[row] for row in used])
-    with usd.stage(path, character, frame, rate) as made:
+    with usd.stage(path, character, frame, rate, start) as made:
         _scale(made, character.pivot, motion.scale, frame)
         root = UsdSkel.Root.Define(made, RIG)
         _extents(root, character.pivot, motion.scale, boxes, frame)

@@ -148,7 +148,7 @@ def faulty(made, part, document, fault):
         ("target rows", "accessor 0 has 3 elements, expected 6"),
         ("outside", "outside its binary chunk"),
         ("no targets", "has no morph targets"),
-        ("two meshes", "has 2 meshes with morph targets"),
+        ("two meshes", "mesh 1 stands 0 times in the scene, expected once"),
         ("strip", "drawn in mode 5"),
         ("indices", "is of type 'VEC3', expected SCALAR"),
         ("names", "its targetNames are 1, its morph targets 2"),

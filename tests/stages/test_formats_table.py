@@ -22,7 +22,7 @@ def take(request, tmp_path_factory):
 
 
 def test_every_reader_agrees_with_the_float64_mesh(take, tmp_path, capsys):
-    assert formats.check(take.folder, tmp_path, None)
+    assert formats.check(take.folder, tmp_path)
     rows = capsys.readouterr().out.splitlines()[4:]
     assert [row.split("  ")[0] for row in rows] == [name for name, *_ in format_readers.READERS]
     assert all(row.split()[-2:] == ["9", f"{take.last_time:.6f}"] for row in rows)

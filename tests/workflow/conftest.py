@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parent))
+import layer_show
 import tiny_show
 
 PROJECT = Path(__file__).parents[2]
@@ -66,6 +67,17 @@ def finished(tmp_path_factory):
     folder = tmp_path_factory.mktemp("finished")
     show = Show(folder / "show", checkout(folder / "checkout"))
     tiny_show.build(show.folder)
+    run = show.snakemake()
+    assert run.returncode == 0, run.stdout + run.stderr
+    return show
+
+
+@pytest.fixture(scope="session")
+def layered(tmp_path_factory):
+    """Return a show of layers that has been run once; tests copy it before they change it."""
+    folder = tmp_path_factory.mktemp("layered")
+    show = Show(folder / "show", checkout(folder / "checkout"))
+    layer_show.build(show.folder)
     run = show.snakemake()
     assert run.returncode == 0, run.stdout + run.stderr
     return show

@@ -1,35 +1,21 @@
 """A show of marker takes of a face in layers, and of two characters they drive, made in a second.
 
-The face is a plate of three masks under markers. In the take `a` it shows each extreme of emotion,
-speech and blink by itself; in `b` it mixes them by factors that are planted, with a film and a
-stretch without markers. `plain` is a mesh with a pose for each extreme, `painted` one whose poses
-are tables of its own blendshapes. Times are those of the film, which starts `AHEAD_S` after `b`.
+The takes are those of `layer_face`; `b` has a film and a stretch without markers. `plain` is a mesh
+with a pose for each extreme, `painted` one whose poses are tables of its own blendshapes.
 """
 
 import av
+import layer_face
 import marker_show
 import numpy as np
 import tiny_show
 
-RATE, FILM_RATE = 30, 10
-AHEAD_S, LENGTH_S = 0.4, 1.6  # of the markers before the film, of the film
+FILM_RATE = 10
+# of every take
+TAKE = {"preview.mp4", "mesh.exr", "mesh.json", "mesh.pc2", "mesh.glb", "weights.csv"}
+SOLVED = {"layers.parquet", "directed.parquet", "weights.parquet"}
 LOST = (30, 36)  # frames of `b` without markers, from the film's first picture
-COLUMNS, ROWS = 7, 8
-MASKS = ("upper", "mouth", "eyes")
-LAYERS = ("emotion", "speech", "blink")
-RESTS = {"emotion": "neutral", "speech": "rest", "blink": "open"}
-EXTREMES = [
-    ("emotion", "joy"),
-    ("emotion", "surprise"),
-    ("emotion", "rage"),
-    ("speech", "m"),
-    ("speech", "aa"),
-    ("blink", "half"),
-    ("blink", "closed"),
-]
-PEAKS = {extreme: 6 + 9 * i for i, extreme in enumerate(EXTREMES)}  # frames of `a`
 MISSING = ("emotion", "rage")  # on the painted character
-MM = 15.0  # of the actor's face where the plate has 1
 # (column, row) of the vertices that each blendshape of the painted character moves
 SHAPES = {
     "browInnerUp": [(2, 6), (3, 6), (4, 6)],
@@ -49,97 +35,34 @@ POSES = {
     ("blink", "closed"): {"eyeBlinkLeft": 1.0},
 }
 MOST_BLINK = 0.25  # of the shape, by the painted character's channels
-CHARACTER_COLUMNS = (
-    "character method folder neutral masks painted_masks delivery_shapes channels unit up_axis "
-    "pivot face_unit rate lip_sigma temporal head head_gain follow_s tempo gap_filling outputs"
-)
-
-
-def grid():
-    """Return column (V,) and row (V,) of the plate's vertices."""
-    x, y = np.indices((COLUMNS, ROWS))
-    return x.ravel(), y.ravel()
-
-
-def neutral(scale=1.0, depth=0.2):
-    """Return the vertices (V, 3) of a bent plate."""
-    x, y = grid()
-    return scale * np.stack([x - 3.0, y - 4.0, -depth * (x - 3) ** 2 - 0.05 * (y - 4) ** 2], axis=1)
-
-
-def masks():
-    """Return the masks (R, V): one row of vertices is half the mouth's, half the upper face's."""
-    _, y = grid()
-    mouth = np.select([y < 3, y == 3], [1.0, 0.5], 0.0)
-    eyes = np.isin(y, (4, 5)).astype(float)
-    return np.stack([1 - mouth - eyes, mouth, eyes])
-
-
-def poses(seed, size):
-    """Return the differences (K, V, 3) of the extremes; sides and top of the plate never move."""
-    x, y = grid()
-    loose = (x % (COLUMNS - 1) > 0) & (y < ROWS - 1)
-    held = {"emotion": loose, "speech": loose & (y < 4), "blink": loose & np.isin(y, (4, 5))}
-    rng = np.random.default_rng(seed)
-    offsets = np.stack(
-        [held[layer][:, None] * rng.uniform(-0.12, 0.12, (len(x), 3)) for layer, _ in EXTREMES]
-    )
-    # lips: the middle of the rows 1 and 2
-    for extreme, lower, upper in ((("speech", "m"), 0.3, -0.3), (("speech", "aa"), -0.5, 0.1)):
-        lips = offsets[EXTREMES.index(extreme)]
-        lips[(y <= 1) & loose, 1] = lower
-        lips[(y == 2) & loose, 1] = upper
-    return size * offsets
-
-
-def factors(time_s):
-    """Return planted weights (T, R, J), coefficients (T, K) and amplitudes (T, J) of `b`."""
-
-    def wave(rate, phase):
-        return 0.5 - 0.5 * np.cos(2 * np.pi * (rate * np.maximum(time_s, 0) + phase))
-
-    weights = np.empty((len(time_s), len(MASKS), len(LAYERS)))
-    for mask, (speech, blink) in enumerate(((0.1, 0.1), (0.75, 0.05), (0.05, 0.7))):
-        weights[:, mask, 1] = speech * (0.7 + 0.3 * wave(0.6, 0.2 * mask))
-        weights[:, mask, 2] = blink * (0.7 + 0.3 * wave(0.8, 0.3 * mask))
-    weights[..., 0] = 1 - weights[..., 1:].sum(axis=-1)
-    coefficients = np.stack([wave(0.3 + 0.17 * k, 0.11 * k) for k in range(len(EXTREMES))], axis=1)
-    coefficients[:, :3] /= 3.2  # what is left to one is the rest's of each layer
-    coefficients[:, 3:] /= 2.1
-    amplitudes = 0.6 + 0.35 * np.stack([wave(0.5, 0), wave(0.9, 0.3), wave(0.4, 0.7)], axis=1)
-    return weights, coefficients, amplitudes
-
-
-def mixture(time_s):
-    """Return the planted weights (T, R, K) of extremes under masks in `b`."""
-    weights, coefficients, amplitudes = factors(time_s)
-    layer = [LAYERS.index(each) for each, _ in EXTREMES]
-    return weights[:, :, layer] * (coefficients * amplitudes[:, layer])[:, None]
-
-
-def composed(under, offsets):
-    """Return the differences (T, V, 3) that weights (T, R, K) make of extremes (K, V, 3)."""
-    return np.einsum("trk,rv,kvd->tvd", under, masks(), offsets)
-
-
-def shown(shot):
-    """Return the weights (T, R, K) of a take, from its markers' first frame."""
-    if shot == "b":
-        count = round((AHEAD_S + LENGTH_S) * RATE)
-        return mixture(np.arange(count) / RATE - AHEAD_S)
-    frame = np.arange(max(PEAKS.values()) + 9)
-    away = np.stack([np.clip(abs(frame - peak) / 5, 0, 1) for peak in PEAKS.values()], axis=1)
-    return np.repeat((0.5 + 0.5 * np.cos(np.pi * away))[:, None], len(MASKS), axis=1)
-
-
-def marker_places(shot):
-    """Return places (T, V, 3) [mm] of a take's markers, on every vertex, and the head's turns."""
-    face = neutral() + composed(shown(shot), poses(1, 1.0))
-    turn = 0.2 * np.sin(2 * np.pi * 0.6 * np.arange(len(face)) / RATE) * (shot == "b")
-    cosine, sine, none = np.cos(turn), np.sin(turn), np.zeros(len(turn))
-    about_y = np.array([[cosine, none, sine], [none, none + 1, none], [-sine, none, cosine]])
-    places = MM * np.einsum("ijt,tpj->tpi", about_y, face)
-    return places + np.stack([20 * turn, 1500 + 10 * turn, none], axis=1)[:, None]
+CHARACTERS = {
+    # without what may draw a take away from its points
+    "plain": {
+        "neutral": "neutral.obj",
+        "masks": "masks.tsv",
+        "pivot": "0 0 -2",
+        "face_unit": "8",
+        "lip_sigma": "0",
+        "temporal": "0",
+        "lean": "0",
+        "head": "none",
+    },
+    "painted": {
+        "neutral": "neutral.obj",
+        "masks": "masks.ply",
+        "painted_masks": ",".join(layer_face.MASKS),
+        "delivery_shapes": "shapes",
+        "channels": "channels.tsv",
+        "pivot": "0 0 -1",
+        "face_unit": "2",
+        "rate": "15",
+        "head_gain": "1 0 1",
+        "follow_s": "0.1",
+        "tempo": "2",
+        "gap_filling": "dynamics",
+        "outputs": "livelink",
+    },
+}
 
 
 def marker(x, y):
@@ -149,26 +72,28 @@ def marker(x, y):
 
 def write_markers(path, shot):
     """Write a take as a wide table; `b` has a stretch without markers."""
-    places = marker_places(shot)
-    names = [f"{marker(x, y)}_{axis}" for x, y in zip(*grid(), strict=True) for axis in "xyz"]
+    places = layer_face.marker_places(shot)
+    names = [
+        f"{marker(x, y)}_{axis}" for x, y in zip(*layer_face.grid(), strict=True) for axis in "xyz"
+    ]
     rows = [("frame", "time_s", *names)]
-    first, last = (round(AHEAD_S * RATE) + frame for frame in LOST)
+    first, last = (round(layer_face.AHEAD_S * layer_face.RATE) + frame for frame in LOST)
     for frame, row in enumerate(places.reshape(len(places), -1)):
         lost = shot == "b" and first <= frame < last
         cells = [""] * len(row) if lost else [f"{value:.6f}" for value in row]
-        rows.append((frame, f"{frame / RATE:.6f}", *cells))
+        rows.append((frame, f"{frame / layer_face.RATE:.6f}", *cells))
     tiny_show.write_table(path, rows, ",")
 
 
 def write_film(path):
     """Write a film that darkens, with sound."""
-    samples = marker_show.speech(1)[: round(LENGTH_S * marker_show.SOUND_RATE)]
+    samples = marker_show.speech(1)[: round(layer_face.LENGTH_S * marker_show.SOUND_RATE)]
     with av.open(str(path), "w") as container:
         video = container.add_stream("libx264", rate=FILM_RATE, options={"threads": "1"})
         video.width = video.height = marker_show.SIZE
         video.pix_fmt = "yuv420p"
         audio = container.add_stream("aac", rate=marker_show.SOUND_RATE, layout="mono")
-        for grey in np.linspace(200, 50, round(LENGTH_S * FILM_RATE)):
+        for grey in np.linspace(200, 50, round(layer_face.LENGTH_S * FILM_RATE)):
             picture = np.full((marker_show.SIZE, marker_show.SIZE, 3), grey, np.uint8)
             container.mux(video.encode(av.VideoFrame.from_ndarray(picture, format="rgb24")))
         container.mux(video.encode())
@@ -177,8 +102,12 @@ def write_film(path):
 
 def corners():
     """Return the vertices of the plate's faces."""
-    first = [ROWS * i + j for i in range(COLUMNS - 1) for j in range(ROWS - 1)]
-    return [(v, v + ROWS, v + ROWS + 1, v + 1) for v in first]
+    first = [
+        layer_face.ROWS * i + j
+        for i in range(layer_face.COLUMNS - 1)
+        for j in range(layer_face.ROWS - 1)
+    ]
+    return [(v, v + layer_face.ROWS, v + layer_face.ROWS + 1, v + 1) for v in first]
 
 
 def write_obj(path, vertices):
@@ -204,12 +133,12 @@ def write_ply(path, vertices, colours):
 
 def write_plain(folder):
     """Write a plate with a table of masks and a pose for each extreme."""
-    write_obj(folder / "neutral.obj", neutral(2.0, 0.1))
-    for (layer, name), offset in zip(EXTREMES, poses(2, 2.0), strict=True):
-        write_obj(folder / "poses" / f"{layer}_{name}.obj", neutral(2.0, 0.1) + offset)
+    write_obj(folder / "neutral.obj", layer_face.neutral(2.0, 0.1))
+    for (layer, name), offset in zip(layer_face.EXTREMES, layer_face.poses(2, 2.0), strict=True):
+        write_obj(folder / "poses" / f"{layer}_{name}.obj", layer_face.neutral(2.0, 0.1) + offset)
     rows = [
         (vertex, mask, f"{weight:g}")
-        for mask, weights in zip(MASKS, masks(), strict=True)
+        for mask, weights in zip(layer_face.MASKS, layer_face.masks(), strict=True)
         for vertex, weight in enumerate(weights)
         if weight
     ]
@@ -218,13 +147,13 @@ def write_plain(folder):
 
 def write_painted(folder):
     """Write a plate with painted masks, blendshapes, and poses as tables of them."""
-    rest = neutral(0.5, 0.3)
+    rest = layer_face.neutral(0.5, 0.3)
     write_obj(folder / "neutral.obj", rest)
-    write_ply(folder / "masks.ply", rest, masks().T)
+    write_ply(folder / "masks.ply", rest, layer_face.masks().T)
     for number, (name, places) in enumerate(SHAPES.items()):
         shape = rest.copy()
         for x, y in places:
-            shape[ROWS * x + y] += 0.3, 0.1 * number, -0.2
+            shape[layer_face.ROWS * x + y] += 0.3, 0.1 * number, -0.2
         write_obj(folder / "shapes" / f"{name}.obj", shape)
     for (layer, name), mix in POSES.items():
         table = [("name", "value"), *mix.items()]
@@ -233,16 +162,26 @@ def write_painted(folder):
     tiny_show.write_table(folder / "channels.tsv", limits)
 
 
+def character_rows():
+    """Return the rows of characters.tsv, blank where nothing is asked."""
+    columns = list(dict.fromkeys(column for cells in CHARACTERS.values() for column in cells))
+    rows = [("character", "method", "folder", "unit", "up_axis", *columns)]
+    for name, cells in CHARACTERS.items():
+        row = [cells.get(column, "") for column in columns]
+        rows.append((name, "layers", name, "cm", "y", *row))
+    return rows
+
+
 def extreme_rows(actor, shot):
     """Return an actor's rows of expressions.tsv; all rests are the neutral frame."""
-    rests = [(actor, layer, name, shot, 0) for layer, name in RESTS.items()]
-    return rests + [(actor, *extreme, shot, peak) for extreme, peak in PEAKS.items()]
+    rests = [(actor, layer, name, shot, 0) for layer, name in layer_face.RESTS.items()]
+    return rests + [(actor, *extreme, shot, peak) for extreme, peak in layer_face.PEAKS.items()]
 
 
 def mask_rows(actor):
     """Return an actor's rows of actor_masks.tsv."""
     rows = [(actor, "upper", "*", "")]
-    for x, y in zip(*grid(), strict=True):
+    for x, y in zip(*layer_face.grid(), strict=True):
         if y <= 3:
             rows.append((actor, "mouth", marker(x, y), 0.5 if y == 3 else ""))
         elif y <= 5:
@@ -259,42 +198,12 @@ def build(folder):
         write_markers(footage / f"{shot}.csv", shot)
     write_plain(folder / "plain")
     write_painted(folder / "painted")
-    plain = (
-        "plain",
-        "neutral.obj",
-        "masks.tsv",
-        "",
-        "",
-        "",
-        "cm",
-        "y",
-        "0 0 -2",
-        "8",
-        "film",
-        "0",
-        "0",
-    )
-    painted = ("painted", "neutral.obj", "masks.ply", ",".join(MASKS), "shapes", "channels.tsv")
-    painted += (
-        "cm",
-        "y",
-        "0 0 -1",
-        "2",
-        "15",
-        "0.02",
-        "0.05",
-        "apply",
-        "1 0 1",
-        "0.1",
-        "2",
-        "dynamics",
-    )
     session = "session actor neutral_shot neutral_frame unit_markers marker_unit lip_points"
     tables = {
         "shots": [
             ("shot", "session", "video", "markers", "sync_offset_s", "basis"),
             ("a", "s1", "", "footage/a.csv", "", "yes"),
-            ("b", "s1", "footage/b.mp4", "footage/b.csv", -AHEAD_S, ""),
+            ("b", "s1", "footage/b.mp4", "footage/b.csv", -layer_face.AHEAD_S, ""),
             ("c", "s2", "", "footage/a.csv", "", "yes"),
         ],
         "sessions": [
@@ -302,11 +211,7 @@ def build(folder):
             ("s1", "eve", "a", "0", "M04,M64", "mm", "M32,M31"),
             ("s2", "lea", "c", "0", "M04,M64", "mm", "M32,M31"),
         ],
-        "characters": [
-            CHARACTER_COLUMNS.split(),
-            ("plain", "layers", *plain, "none", "", "", "", "", ""),
-            ("painted", "layers", *painted, "livelink"),
-        ],
+        "characters": character_rows(),
         "cast": [
             ("actor", "character", "points", "shots"),
             ("eve", "plain", "markers", "b"),
@@ -330,3 +235,26 @@ def build(folder):
         "tracker_method: eigen_points_descent\nmin_confidence: 0.3\nmax_marker_gap_s: 0.1\n"
         "seed: 1\n"
     )
+
+
+def edit(path, old, new):
+    """Put other words into a file."""
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new, 1))
+
+
+def add(path, *cells):
+    """Add a row to a table."""
+    with path.open("a") as table:
+        table.write("\t".join(map(str, cells)) + "\n")
+
+
+def take(show, character):
+    """Return the folder of the character's take `b`."""
+    return show.folder / "results/takes/b" / character
+
+
+def names_in(folder):
+    """Return the paths of all that is in a folder."""
+    return {path.relative_to(folder).as_posix() for path in folder.rglob("*")}
