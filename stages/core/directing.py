@@ -47,9 +47,13 @@ def presence(time_s: np.ndarray, start_s: float, end_s: float, fade_s: float) ->
     Raises
     ------
     ValueError
-        if the range is shorter than its fades
+        if the range is empty or shorter than its fades, or these are negative
     """
-    if not end_s - start_s >= 2 * fade_s >= 0 or start_s == end_s:
+    if not fade_s >= 0:
+        raise ValueError(f"a fade of {fade_s:g} s is negative")
+    if not end_s > start_s:
+        raise ValueError(f"the end, {end_s:g} s, is not after the start, {start_s:g} s")
+    if not end_s - start_s >= 2 * fade_s:
         raise ValueError(f"{start_s:g} s to {end_s:g} s leaves no room for fades of {fade_s:g} s")
     inside = (time_s >= start_s) & (time_s < end_s)
     if not fade_s:

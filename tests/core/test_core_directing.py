@@ -62,7 +62,15 @@ def test_rows_multiply_and_open_ends_do_not_fade():
     assert (directing.gains(TIMES, 2, [none]) == 1.0).all()
 
 
-@pytest.mark.parametrize("span", [(3, 2, 0), (2, 2, 0), (2, 3, 0.6), (2, 3, -0.1)])
-def test_ranges_without_room_are_refused(span):
-    with pytest.raises(ValueError, match="leaves no room"):
+@pytest.mark.parametrize(
+    ("span", "message"),
+    [
+        ((3, 2, 0), "2 s, is not after the start, 3 s"),
+        ((2, 2, 0), "is not after the start"),
+        ((2, 3, 0.6), "leaves no room"),
+        ((2, 3, -0.1), "a fade of -0.1 s is negative"),
+    ],
+)
+def test_ranges_without_room_are_refused(span, message):
+    with pytest.raises(ValueError, match=message):
         directing.presence(TIMES, *span)
