@@ -137,15 +137,6 @@ SENSELESS = [
 
 
 SENSELESS_NAMES = ("both", "channels", "tempo", "alone", "no name", "no family", "end", "time")
-    "both",
-    "channels",
-    "tempo",
-    "one extreme",
-    "no name",
-    "no family",
-    "end",
-    "time",
-]
 
 
 @pytest.mark.parametrize(("table", "change", "pattern"), SENSELESS, ids=SENSELESS_NAMES)
