@@ -132,6 +132,9 @@ def test_what_is_no_sound_is_refused(tmp_path):
     (tmp_path / "bad.wav").write_bytes(b"no sound at all")
     with pytest.raises(errors.InputError, match="cannot be decoded"):
         sound_writer.write(tmp_path / "a.wav", tmp_path / "bad.wav", Fraction(2))
+    write_wav(tmp_path / "short.wav", np.zeros(1))
+    with pytest.raises(errors.InputError, match=r"short\.wav: holds no sound from"):
+        sound_writer.write(tmp_path / "a.wav", tmp_path / "short.wav", Fraction(2))
     assert not (tmp_path / "a.wav").exists()
 
 
