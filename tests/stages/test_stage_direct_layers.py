@@ -150,6 +150,17 @@ def test_an_extreme_of_a_family_may_stand_alone_and_rows_multiply(take):
     np.testing.assert_array_equal(found["mouth.speech_m"], plain["mouth.speech_m"])
 
 
+def test_a_neutral_that_is_a_pose_gets_what_gains_take(take):
+    names = ["mouth.emotion_neutral", "mouth.emotion_joy", "mouth.emotion_rage"]
+    take.write_rig(names)
+    plain, found = take.direct(), take.direct("oliver\t\temotion\trage\t0.25\t\t\t")
+    taken = plain["mouth.emotion_rage"] - found["mouth.emotion_rage"]
+    np.testing.assert_allclose(taken, 0.75 * plain["mouth.emotion_rage"], atol=1e-7)
+    given = found["mouth.emotion_neutral"] - plain["mouth.emotion_neutral"]
+    np.testing.assert_allclose(given, taken, atol=1e-7)
+    np.testing.assert_array_equal(found["mouth.emotion_joy"], plain["mouth.emotion_joy"])
+
+
 def smoothed(take, smoothing):
     """Run smooth_weights on what was directed, with a head that is still."""
     frames = np.arange(FRAMES)
