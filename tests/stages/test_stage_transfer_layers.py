@@ -83,7 +83,7 @@ def test_closing_lips_draw_the_mouth_to_m(actor):
     shown = closed == 1
     assert found.weights[shown, 1, speech].min() > 0.95
     assert found.coefficients[shown, found.extremes.index(("speech", "m"))].min() > 0.95
-    mouth = layers.read(actor.transfer(lip_sigma=0.02, lips_yield="mouth"))
+    mouth = layers.read(actor.transfer(lip_sigma=0.02, lip_bias="mouth"))
     assert mouth.weights[shown, 1, speech].min() > 0.95
     elsewhere = actor.mask != 1
     errors_of = [

@@ -154,11 +154,15 @@ def check_session(tables, row):
 
 def check_character(row):
     """Refuse a character without the file that its method needs."""
-    needed = {"key_shapes": "masks", "layers": "masks", "blendshapes": "virtual_markers"}
     own_shapes = row.cells["method"] in ("key_shapes", "layers")
     named = not own_shapes or row.cells["delivery_shapes"]
     if not named and "livelink" in show.listed(row.cells["outputs"]):
-        refuse("characters", row, "outputs", "livelink needs a rig of named shapes; remove it")
+        refuse(
+            "characters",
+            row,
+            "outputs",
+            "livelink needs named shapes; remove it, or give delivery_shapes",
+        )
     if own_shapes and row.cells["neutral"].endswith(".glb"):
         refuse("characters", row, "neutral", "this method needs an .obj, .ply or .csv; export one")
     if row.cells["method"] == "layers" and row.cells["masks"].endswith(".ply"):
@@ -176,17 +180,25 @@ def check_character(row):
     tempo_text.read(f"config/characters.tsv: line {row.line}, column tempo", row.cells["tempo"])
     if row.cells["delivery_shapes"] and row.cells["neutral"].endswith(".csv"):
         refuse("characters", row, "delivery_shapes", "controls have no blendshapes; clear the cell")
-    column = needed.get(row.cells["method"])
     if row.cells["outputs"] and row.cells["neutral"].endswith(".csv"):
         refuse("characters", row, "outputs", "a table of controls has no mesh; clear the cell")
-    if column and not row.cells[column]:
-        refuse("characters", row, column, f"method {row.cells['method']} needs it; name the file")
+    if own_shapes and not row.cells["masks"]:
+        message = f"method {row.cells['method']} needs it; name the file"
+        refuse("characters", row, "masks", message)
 
 
 def check_cast(tables, row):
     """Refuse a take whose points do not exist, or do not fit the character's method."""
-    method = row_of(tables["characters"], "character", row.cells["character"])["method"]
+    character = row_of(tables["characters"], "character", row.cells["character"])
+    method = character["method"]
     points, wanted = row.cells["points"], show.listed(row.cells["shots"])
+    fitting = POINTS[method]
+    if points not in fitting:
+        message = f"method {method} is driven by {' or '.join(fitting)}; write that"
+        refuse("cast", row, "points", message)
+    if method == "blendshapes" and points != "curves" and not character["virtual_markers"]:
+        message = "method blendshapes needs virtual_markers in characters.tsv; name the file"
+        refuse("cast", row, "character", message)
     sessions = [
         other.cells["session"]
         for other in tables["sessions"]
