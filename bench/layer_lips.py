@@ -158,7 +158,9 @@ def directed(take: layer_vignette.Take) -> list[str]:
     parts = solved.weights, solved.coefficients, solved.amplitudes, made.layer
     for label, extremes in chosen.items():
         change = directing.Direction(np.array(extremes, int), 0.0, -np.inf, np.inf, 0.2)
-        u = directing.composed(*parts, directing.gains(time_s, len(made.extremes), [change]))
+        gains = directing.gains(time_s, len(made.extremes), [change])
+        # the characters' own neutrals are those of their layers
+        u = directing.composed(*parts, gains, np.full(len(made.layers), -1))
         same = np.array_equal(u[:, :, spoken], solved.u[:, :, spoken])
         cells = []
         for body in bodies.values():

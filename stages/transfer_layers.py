@@ -25,6 +25,8 @@ from stages.core import (
 from stages.files import errors, extremes, layer_points, layers, lip_gap, simplices
 
 CHUNK = 1024
+# beyond this a frame is that before, or a bound none, to every digit
+MOST = 1e6
 Solve = Callable[
     [layer_model.Model, layer_solver.Settings, np.ndarray, np.ndarray], layer_solver.Solution
 ]
@@ -75,9 +77,9 @@ def run(options: argparse.Namespace, solver: str, solve: Solve) -> None:
     solve : model, settings, frames (T, D) and closeness (T,) to the solution of all frames
     """
     for name in ("lip_sigma", "temporal", "beyond", "lean"):
-        if not 0 <= getattr(options, name) < np.inf:
+        if not 0 <= getattr(options, name) <= MOST:
             flag = f"--{name.replace('_', '-')}"
-            raise errors.InputError(flag, f"is {getattr(options, name):g}: give 0 or more")
+            raise errors.InputError(flag, f"is {getattr(options, name):g}: give 0 to {MOST:g}")
     made = simplices.read(options.simplices)
     points = layer_points.read(options.expression, made.driven_by)
     if missing := layer_points.check_within(options.expression, points, made.layout):

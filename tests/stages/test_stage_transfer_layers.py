@@ -162,6 +162,7 @@ def test_bad_input_is_one_line(actor):
     for changed, message in (
         ({"lip_sigma": -1}, "--lip-sigma: is -1"),
         ({"temporal": "nan"}, "--temporal: is nan"),
+        ({"temporal": "1e300"}, "--temporal: is 1e.300: give 0 to 1e.06"),
         ({"beyond": "inf"}, "--beyond: is inf"),
         ({"lip_sigma": 0.02}, "was made for lip points '' and lip mask '', not 'lips_00,lips_01'"),
         ({"simplices": actor.folder / "rig.npz"}, "kind 'rig', expected 'simplices'"),

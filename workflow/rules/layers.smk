@@ -204,7 +204,7 @@ rule direct_layers:
     params:
         code=code_of("direct_layers"),
         rows=directing_rows,
-        directing=directing_table,
+        directing=directing_path,
     shell:
         "python -m stages.direct_layers"
         " --layers {input.layers:q}"
