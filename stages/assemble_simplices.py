@@ -90,7 +90,7 @@ def main(argv: Sequence[str]) -> None:
     _check_apart(table, shared, basis, scale, layer)
     names = [(row.layer, row.name) for row in shared]
     lips = _lips(options, actor, picked, shared, masks.names)
-    lip_mask, closed_gap, opened, told = "", np.nan, np.zeros(len(shared)), (0.0 * scale, 0.0)
+    lip_mask, closed_gap, opened, told = "", np.nan, np.zeros((0, len(shared))), (0.0 * scale, 0.0)
     if lips is not None:
         lip_mask, closed = options.lip_mask, names.index(extremes.CLOSED_LIPS)
         seen = lip_shots.at(lips, actor, shared)
@@ -268,7 +268,7 @@ def _lips(
 def _open(
     options: argparse.Namespace, names: list[tuple[str, str]], gaps: np.ndarray
 ) -> np.ndarray:
-    """Return how far the lips of each extreme are open (K,), given the actor's gaps (K,)."""
+    """Return how far each mouth is open in each extreme (G, K), given the actor's gaps (K,)."""
     closed = names.index(extremes.CLOSED_LIPS)
     own = np.maximum(gaps - gaps[closed], 0.0)
     shapes = character_lips.read(rig.read_any(options.rig), options.lip_mask, names)
@@ -280,8 +280,9 @@ def _open(
             name = "_".join(names[int(np.isnan(own).argmax())])
             message = f"{options.lip_points} were not observed on the frame of {name}"
             raise errors.InputError(options.expression_table, f"{message}: pick another")
-        return own
-    apart = [n for n, a, b in zip(names, own, found, strict=True) if a < SHUT and b > 4 * SHUT]
+        return own[None]
+    widest = found.max(axis=0)
+    apart = [n for n, a, b in zip(names, own, widest, strict=True) if a < SHUT and b > 4 * SHUT]
     if apart:
         text = ", ".join("_".join(name) for name in apart)
         cli.logger.info("%s: open where the actor's lips are closed: %s", options.poses, text)

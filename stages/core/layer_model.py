@@ -30,8 +30,8 @@ class Model(NamedTuple):
     group : (R * J + K,) int array, the simplex of each entry of the solver's point
     mask_group : (R * K,) int array, the mask of each displacement
     shares : (R * J,) float array, of each layer in the mean squared extremes under a mask
-    gap_row : (R * K,) float array, the lips' gap by displacements, over the root mean square of
-        the extremes' gaps; zero where no gaps are known
+    gap_rows : (G, R * K) float array, the gap of each mouth's lips by displacements, over the root
+        mean square of the extremes' gaps; none where no gaps are known
     """
 
     basis: np.ndarray
@@ -50,7 +50,7 @@ class Model(NamedTuple):
     group: np.ndarray
     mask_group: np.ndarray
     shares: np.ndarray
-    gap_row: np.ndarray
+    gap_rows: np.ndarray
 
     @property
     def sizes(self) -> tuple[int, int, int]:
@@ -96,8 +96,8 @@ def _check(basis, layer, masks, gaps, lip_mask, speech_layer, closed):
             f"lip_mask, speech_layer and closed {bias} must be all -1, or one of {len(masks)} masks"
             f" and an extreme of that layer"
         )
-    if gaps.shape != layer.shape or not ((gaps >= 0.0) & (gaps < np.inf)).all():
-        raise ValueError(f"gaps {gaps.shape} must be those of {len(layer)} extremes, at least zero")
+    if gaps.shape[1:] != layer.shape or not ((gaps >= 0.0) & (gaps < np.inf)).all():
+        raise ValueError(f"gaps {gaps.shape} must be (G, {len(layer)}) and at least zero")
     if gaps.any() and lip_mask < 0:
         raise ValueError(f"gaps up to {gaps.max()} need a lip mask")
 
@@ -142,8 +142,8 @@ def build(
     masks : (R, D) float array, at least zero, one at every coordinate in sum
     lip_mask, speech_layer, closed : int
         the mask and layer of the lip bias and the index of its extreme /m/; all -1 for none
-    gaps : (K,) float array, how far the lips of each extreme stand apart, zero where closed; None
-        = not known
+    gaps : (G, K) float array, how far the lips of each mouth stand apart in each extreme, zero
+        where closed; None = not known
 
     Raises
     ------
@@ -152,7 +152,7 @@ def build(
     """
     basis, masks = np.array(basis, float), np.array(masks, float)
     layer = np.array(layer, np.int64)
-    gaps = np.zeros(len(layer)) if gaps is None else np.array(gaps, float)
+    gaps = np.zeros((0, len(layer))) if gaps is None else np.array(gaps, float)
     _check(basis, layer, masks, gaps, lip_mask, speech_layer, closed)
     regions, layers, count = len(masks), int(layer.max()) + 1, len(layer)
     pairs = np.ascontiguousarray(np.argwhere((masks @ masks.T) > 0.0), np.int64)
@@ -179,16 +179,17 @@ def build(
         np.concatenate([np.repeat(np.arange(regions), layers), regions + layer]),
         mask_group,
         _shares(diagonal.reshape(regions, count), layer),
-        _gap_row(gaps, regions, lip_mask),
+        _gap_rows(gaps, regions, lip_mask),
     )
 
 
-def _gap_row(gaps, regions, lip_mask):
-    """Return the gap of the lips by displacements, in units of its root mean square."""
-    found = np.zeros((regions, len(gaps)))
-    if gaps.any():
-        found[lip_mask] = gaps / np.sqrt(np.mean(gaps**2))
-    return found.ravel()
+def _gap_rows(gaps, regions, lip_mask):
+    """Return the gap of each mouth by displacements, in units of its root mean square."""
+    open_gaps = gaps[gaps.any(axis=1)]
+    found = np.zeros((len(open_gaps), regions, gaps.shape[1]))
+    if len(found):
+        found[:, lip_mask] = open_gaps / np.sqrt(np.mean(open_gaps**2, axis=1, keepdims=True))
+    return found.reshape(len(found), regions * gaps.shape[1])
 
 
 def _shares(squares, layer):

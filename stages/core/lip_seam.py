@@ -8,6 +8,7 @@ import numpy as np
 
 TOUCH = 0.0125  # how near two vertices of closed lips are [face units], 0.5 % of a face's height
 PART = 0.075  # how far apart they come in some pose [face units]
+ALONG = 0.3  # how near pairs of one mouth follow one another [face units]
 
 
 def pairs(shapes: np.ndarray, closed: int) -> np.ndarray:
@@ -25,11 +26,26 @@ def pairs(shapes: np.ndarray, closed: int) -> np.ndarray:
     return touching[widest > PART]
 
 
-def gaps(shapes: np.ndarray, closed: int) -> np.ndarray | None:
-    """Return how far the lips are open in every pose (K,) [face units]; None where none meet.
+def mouths(points: np.ndarray) -> np.ndarray:
+    """Return the mouth (M,) of each pair by its place (M, 3).
 
-    The mean over the pairs of how much further apart than in the closed pose they are; what half of
-    `TOUCH` hides counts as closed.
+    Pairs that a chain of steps of at most `ALONG` joins are of one mouth. Pieces of the mesh do not
+    tell: lips may be pieces apart from lining and teeth, and one skin may hold several mouths.
+    """
+    # dense lips have thousands of pairs, yet few places a touch apart
+    cells, cell = np.unique(np.round(points / TOUCH), axis=0, return_inverse=True)
+    near = np.linalg.norm(cells[:, None] - cells, axis=2) <= ALONG / TOUCH
+    mouth, before = np.arange(len(cells)), None
+    while not np.array_equal(mouth, before):
+        mouth, before = np.where(near, mouth, len(cells)).min(axis=1), mouth
+    return np.unique(mouth[cell.ravel()], return_inverse=True)[1]
+
+
+def gaps(shapes: np.ndarray, closed: int) -> np.ndarray | None:
+    """Return how far each mouth is open in every pose (G, K) [face units]; None where none meet.
+
+    The mean over a mouth's pairs of how much further apart than in the closed pose they are; what
+    half of `TOUCH` hides counts as closed.
 
     Parameters
     ----------
@@ -39,7 +55,9 @@ def gaps(shapes: np.ndarray, closed: int) -> np.ndarray | None:
     if not len(found):
         return None
     still = _apart(shapes[closed], found) + 0.5 * TOUCH
-    return np.array([np.maximum(_apart(shape, found) - still, 0.0).mean() for shape in shapes])
+    opened = np.array([np.maximum(_apart(shape, found) - still, 0.0) for shape in shapes])
+    mouth = mouths(shapes[closed][found].mean(axis=1))
+    return np.array([opened[:, mouth == g].mean(axis=1) for g in range(mouth.max() + 1)])
 
 
 def _touching(points: np.ndarray) -> np.ndarray:

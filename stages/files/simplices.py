@@ -1,6 +1,6 @@
 """`simplices.npz`: the extremes that an actor and a character share, ready to be solved for.
 
-Arrays: `basis` (D, K), `scale` (D,), `masks` (R, D), `layer` (K,), `gaps` (K,), `gap_weights`
+Arrays: `basis` (D, K), `scale` (D,), `masks` (R, D), `layer` (K,), `gaps` (G, K), `gap_weights`
 (D,). The header: `layers` (J),
 `extremes` (K pairs of layer and name), `masks` (R names), `points` (groups of kind and names),
 `driven_by` (`video`, `markers` or `both`), `lip_points`, `lip_mask`, `closed_gap`, `gap_start`.
@@ -39,8 +39,8 @@ class Simplices:
     lip_points : `upper,lower`, whose distance shows lip closures; or an empty text
     lip_mask : the mask of the lips; an empty text where there is no lip bias
     closed_gap : that distance [face units] where the lips are closed; NaN without a lip bias
-    gaps : (K,) float array [face units], how far the lips of each extreme are open, on the
-        character if it shows where its lips meet; zero without a lip bias
+    gaps : (G, K) float array [face units], how far the lips of each mouth are open in each
+        extreme, on the character if it shows where its lips meet; none without a lip bias
     gap_weights : (D,) float array [face units by balanced offsets], what tells the distance of the
         lips less `closed_gap`; zero where nothing does
     gap_start : that distance [face units] at the neutral
@@ -93,6 +93,8 @@ def read(path: str | Path) -> Simplices:
     for name in ARRAYS:
         if name not in arrays:
             raise errors.InputError(path, f"holds no {name}: delete it and run again")
+    if arrays["gaps"].ndim != 2:
+        raise errors.InputError(path, "holds no gaps of each mouth: delete it and run again")
     closed_gap = header["closed_gap"]
     return Simplices(
         header["layers"],

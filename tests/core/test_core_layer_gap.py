@@ -7,7 +7,7 @@ LAYER = np.repeat([0, 1, 2], (5, 4, 3))
 MASKS = np.eye(3)[np.repeat([0, 1, 2], 24)].T
 MOUTH, SPEECH, CLOSED = 1, 1, 6
 # the lips of two emotions, of the rest of speech and of one blink are closed, as those of /m/ are
-GAPS = np.array([0.0, 0.0, 0.3, 0.1, 0.2, 0.0, 0.0, 0.4, 0.2, 0.0, 0.1, 0.1])
+GAPS = np.array([0.0, 0.0, 0.3, 0.1, 0.2, 0.0, 0.0, 0.4, 0.2, 0.0, 0.1, 0.1])[None]
 
 
 @pytest.fixture
@@ -31,11 +31,11 @@ def face(model, shown):
 def gap_of(found):
     """How far the lips are open, over the root mean square of all extremes' gaps."""
     u = found.weights[..., MOUTH, :][..., LAYER] * found.coefficients
-    return u @ GAPS / np.sqrt(np.mean(GAPS**2))
+    return u @ GAPS[0] / np.sqrt(np.mean(GAPS**2))
 
 
 def test_closed_lips_keep_an_emotion_whose_lips_are_closed(model):
-    frame, kept = face(model, (GAPS == 0.0).astype(float)), {}
+    frame, kept = face(model, (GAPS[0] == 0.0).astype(float)), {}
     for bias in layer_solver.LIP_BIASES:
         settings = layer_solver.Settings(0.0, lip_bias=bias)
         found, _ = layer_solver.solve_frame(model, settings, frame, 0.99)
@@ -85,6 +85,30 @@ def test_the_unit_of_gaps_means_nothing(model):
     np.testing.assert_allclose(one.weights, other.weights, atol=1e-6)
 
 
+def test_mouths_that_open_alike_are_one(model):
+    """Each mouth is measured by its own, so that a small one closes as well as a wide one."""
+    frame = face(model, np.ones(len(LAYER)))
+    settings = layer_solver.Settings(0.0, lip_bias="gap")
+    three = np.concatenate([GAPS, 0.01 * GAPS, 0 * GAPS])
+    alike = layer_model.build(model.basis, LAYER, MASKS, MOUTH, SPEECH, CLOSED, three)
+    one, other = (layer_solver.solve_frame(m, settings, frame, 0.7)[0] for m in (model, alike))
+    np.testing.assert_allclose(one.weights, other.weights, atol=1e-6)
+    np.testing.assert_allclose(one.coefficients, other.coefficients, atol=1e-6)
+
+
+def test_a_mouth_that_rests_open_closes_with_the_others(model):
+    """Open wherever the other is closed, it would hardly show in the mean of the two."""
+    resting = np.where(GAPS == 0.0, 0.02, 0.02 * GAPS) * (np.arange(len(LAYER)) != CLOSED)
+    frame, opened = face(model, (GAPS[0] == 0.0).astype(float)), []
+    settings = layer_solver.Settings(0.0, lip_bias="gap")
+    for gaps in (0.5 * (GAPS + resting), np.concatenate([GAPS, resting])):
+        own = layer_model.build(model.basis, LAYER, MASKS, MOUTH, SPEECH, CLOSED, gaps)
+        found, _ = layer_solver.solve_frame(own, settings, frame, 0.99)
+        u = found.weights[MOUTH, LAYER] * found.coefficients
+        opened.append(u @ resting[0] / 0.02)
+    assert opened[0] > 0.5 and opened[1] < 0.1
+
+
 def test_without_gaps_closed_lips_ask_nothing(model):
     unknown = layer_model.build(model.basis, LAYER, MASKS, MOUTH, SPEECH, CLOSED)
     frame = face(model, np.ones(len(LAYER)))
@@ -96,7 +120,8 @@ def test_without_gaps_closed_lips_ask_nothing(model):
 @pytest.mark.parametrize(
     ("lips", "gaps", "words"),
     [
-        ((MOUTH, SPEECH, CLOSED), GAPS[1:], "gaps"),
+        ((MOUTH, SPEECH, CLOSED), GAPS[:, 1:], "gaps"),
+        ((MOUTH, SPEECH, CLOSED), GAPS[0], "gaps"),
         ((MOUTH, SPEECH, CLOSED), -GAPS, "gaps"),
         ((MOUTH, SPEECH, CLOSED), np.where(GAPS > 0, np.nan, 0.0), "gaps"),
         ((-1, -1, -1), GAPS, "lip mask"),

@@ -1,5 +1,7 @@
 import numpy as np
 import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
 
 from stages.core import lip_seam
 
@@ -24,19 +26,47 @@ def test_lips_meet_where_they_touch_and_part(shuffled):
     found = lip_seam.pairs(shapes[:, order], 0)
     expected = {(i, i + len(RING)) for i in np.flatnonzero(0.3 * np.sin(RING) > lip_seam.PART)}
     assert {tuple(sorted(pair)) for pair in order[found].tolist()} == expected
-    gaps = lip_seam.gaps(shapes[:, order], 0)
+    (gaps,) = lip_seam.gaps(shapes[:, order], 0)
     assert gaps[0] == gaps[3] == 0.0
     bow = np.sin(RING)[[pair[0] for pair in sorted(expected)]]
     hidden = 0.5 * lip_seam.TOUCH
     np.testing.assert_allclose(gaps[[1, 2]], [(g * bow - hidden).mean() for g in (0.3, 0.05)])
 
 
-def test_every_mouth_counts():
+@pytest.mark.parametrize("apart", [0.5, 5.0])
+def test_every_mouth_counts_by_itself(apart):
     """One mouth that stays open in a pose shows, whatever the other does."""
-    poses = [(0.0, 0.0), (0.3, 0.3), (0.0, 0.1), (0.0, 0.0)]
-    shapes = np.stack([np.concatenate([mouth(a), mouth(b, 5.0)]) for a, b in poses])
-    gaps = lip_seam.gaps(shapes, 0)
-    assert gaps[1] > gaps[2] > 0.02 and gaps[0] == gaps[3] == 0.0
+    poses = [(0.0, 0.0), (0.3, 0.2), (0.0, 0.1), (0.1, 0.0)]
+    both = [[mouth(a), mouth(b, apart)] for a, b in poses]
+    gaps = lip_seam.gaps(np.stack([np.concatenate(each) for each in both]), 0)
+    alone = [lip_seam.gaps(np.stack(each), 0)[0] for each in zip(*both, strict=True)]
+    assert len(gaps) == 2
+    np.testing.assert_allclose(
+        sorted(gaps.tolist()), sorted(each.tolist() for each in alone), atol=1e-12
+    )
+
+
+@settings(max_examples=25)
+@given(st.integers(0, 10**6))
+def test_mouths_are_chains_of_near_pairs(seed):
+    """The mouths are those of an independent search, whatever the order and number of pairs."""
+    rng = np.random.default_rng(seed)
+    points = rng.uniform(-1, 1, (rng.integers(1, 40), 3))
+    points = points[rng.integers(0, len(points), 60)]
+    apart = np.linalg.norm(points[:, None] - points, axis=2)
+    assume(np.abs(apart - lip_seam.ALONG).min() > 2 * lip_seam.TOUCH)
+    joined = apart <= lip_seam.ALONG
+    for _ in range(6):
+        joined = joined @ joined
+    found = lip_seam.mouths(points)
+    np.testing.assert_array_equal(found[:, None] == found, joined)
+    assert set(found.tolist()) == set(range(found.max() + 1))
+
+
+def test_a_mouth_of_many_pairs_takes_little_room():
+    along = np.linspace(0, 1, 50_000)
+    points = np.stack([along, 0 * along, 0 * along], axis=1)
+    assert not lip_seam.mouths(points).any()
 
 
 def test_lips_that_never_part_or_touch_are_none():

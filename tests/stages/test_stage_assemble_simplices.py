@@ -1,3 +1,4 @@
+import dataclasses
 import logging
 import re
 
@@ -32,7 +33,7 @@ def test_extremes_come_back(actor):
     lips = actor.basis[actor.sizes[0] :].reshape(-1, 2, len(EXTREMES))[6:8]
     apart = (actor.neutrals[1][6] - actor.neutrals[1][7])[:, None] + lips[0] - lips[1]
     wanted = np.maximum(np.linalg.norm(apart, axis=0) - made.closed_gap, 0)
-    np.testing.assert_allclose(made.gaps, wanted, atol=1e-6)
+    np.testing.assert_allclose(made.gaps, [wanted], atol=1e-6)
     assert not made.gap_weights.any()
 
 
@@ -40,12 +41,21 @@ def test_the_gaps_are_the_characters_own_where_its_lips_meet(actor, caplog):
     actor.write_mouth(open_poses=[("emotion", "joy"), ("speech", "aa")])
     with caplog.at_level(logging.INFO):
         made = simplices.read(actor.assemble())
-    opened = np.flatnonzero(made.gaps)
+    (gaps,) = made.gaps
+    opened = np.flatnonzero(gaps)
     assert [EXTREMES[k] for k in opened] == [("emotion", "joy"), ("speech", "aa")]
-    np.testing.assert_allclose(made.gaps[opened], 0.5 - lip_seam.TOUCH / 2)
+    np.testing.assert_allclose(gaps[opened], 0.5 - lip_seam.TOUCH / 2)
     assert "the actor's gaps are used" not in caplog.text
     assert simplices.lip_indices(made) == (1, 1, EXTREMES.index(("speech", "m")))
     assert set(actor.report().values()) == {"used"} and len(actor.report()) == len(EXTREMES)
+
+
+def test_simplices_of_one_gap_for_all_mouths_are_refused(actor):
+    path = actor.assemble()
+    made = simplices.read(path)
+    simplices.write(path, dataclasses.replace(made, gaps=made.gaps[0]), {}, [])
+    with pytest.raises(errors.InputError, match=r"simplices.npz: holds no gaps of each mouth: del"):
+        simplices.read(path)
 
 
 @pytest.mark.parametrize(("points", "kinds"), [("video", ["video"]), ("markers", ["markers"])])
