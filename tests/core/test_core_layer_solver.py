@@ -10,7 +10,7 @@ LAYER = np.repeat([0, 1, 2], COUNTS)
 SPEECH, MOUTH, CLOSED = 1, 1, 6
 SIZE = 72
 # the lips of two emotions, of the rest of speech and of one blink are closed, as those of /m/ are
-GAPS = np.array([0.0, 0.0, 0.3, 0.1, 0.2, 0.0, 0.0, 0.4, 0.2, 0.0, 0.1, 0.1])
+GAPS = np.array([0.0, 0.0, 0.3, 0.1, 0.2, 0.0, 0.0, 0.4, 0.2, 0.0, 0.1, 0.1])[None]
 
 
 def sharp_masks():
@@ -57,7 +57,7 @@ def cost(model, settings, frame, closeness, previous, weights, coefficients):
     lips = np.sum((weights[MOUTH] - [0, 1, 0]) ** 2)
     lips += np.sum((coefficients - closed)[spoken] ** 2)
     if settings.lip_bias == "gap":
-        gap = np.sum(weights[MOUTH][LAYER] * coefficients * GAPS)
+        gap = np.sum(weights[MOUTH][LAYER] * coefficients * GAPS[0])
         lips = model.scale * gap**2 / np.mean(GAPS**2) / (1.02 - closeness)
     leant = settings.lean * np.sum((weights - moving_shares(model)) ** 2)
     change = 0.0
