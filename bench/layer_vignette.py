@@ -205,7 +205,8 @@ def solve(
     scale = coordinate_balance.factors(basis, numbers, masks, how.balance)
     gamma = np.zeros(len(offsets))
     if how.lip_sigma > 0:
-        gamma = lip_closeness.closeness(gap, 0.0, how.lip_sigma)
+        rule = lip_closeness.steep if how.lip_bias == "gap" else lip_closeness.closeness
+        gamma = rule(gap, 0.0, how.lip_sigma)
     lips = simplices.lip_indices(made) if gamma.any() else (-1, -1, -1)
     opened = made.gaps if gamma.any() else None
     model = layer_model.build(basis * scale[:, None], made.layer, masks, *lips, opened)

@@ -134,7 +134,8 @@ def _closeness(
         told = lip_estimate.Estimate(made.gap_weights, made.gap_start)
         estimated = lip_estimate.gap(told, offsets) + made.closed_gap
         gap = np.where(np.isnan(estimated), gap, estimated)
-    return lip_closeness.closeness(gap, made.closed_gap, options.lip_sigma)
+    rule = lip_closeness.steep if options.lip_bias == "gap" else lip_closeness.closeness
+    return rule(gap, made.closed_gap, options.lip_sigma)
 
 
 def _solve(

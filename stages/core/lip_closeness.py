@@ -1,6 +1,8 @@
-"""How nearly closed the lips are, for the bias towards /m/ (K11 section 4)."""
+"""How nearly closed the lips are, for the bias of closed lips (K11 section 4)."""
 
 import numpy as np
+
+STEEPNESS = 8
 
 
 def closeness(gap: np.ndarray, closed: float, sigma: float) -> np.ndarray:
@@ -20,7 +22,31 @@ def closeness(gap: np.ndarray, closed: float, sigma: float) -> np.ndarray:
     ValueError
         if sigma is not above 0, or `closed` is not finite
     """
+    apart = _apart(gap, closed, sigma)
+    return np.nan_to_num(np.exp(-(apart**2) / (2 * sigma**2)))
+
+
+def steep(gap: np.ndarray, closed: float, sigma: float) -> np.ndarray:
+    """Return ``g = 1 / (1 + (d / sigma)^8)`` with d as in `closeness`: one half at sigma.
+
+    A term weighted by ``g / (1 - g) = (sigma / d)^8`` decides between closed and open about sigma.
+    By the paper's gamma that ratio falls so slowly that it closes lips out to twice sigma, on one
+    character further than on the next.
+
+    Parameters
+    ----------
+    gap, closed, sigma : see `closeness`
+
+    Raises
+    ------
+    ValueError
+        if sigma is not above 0, or `closed` is not finite
+    """
+    return np.nan_to_num(1.0 / (1.0 + (_apart(gap, closed, sigma) / sigma) ** STEEPNESS))
+
+
+def _apart(gap: np.ndarray, closed: float, sigma: float) -> np.ndarray:
+    """Return how much further apart than closed ones the lips are (T,)."""
     if not (0 < sigma < np.inf and np.isfinite(closed)):
         raise ValueError(f"sigma {sigma} must be above 0 and closed {closed} finite")
-    apart = np.maximum(np.asarray(gap, float) - closed, 0.0)
-    return np.nan_to_num(np.exp(-(apart**2) / (2 * sigma**2)))
+    return np.maximum(np.asarray(gap, float) - closed, 0.0)

@@ -44,8 +44,9 @@ def mouths(points: np.ndarray) -> np.ndarray:
 def gaps(shapes: np.ndarray, closed: int) -> np.ndarray | None:
     """Return how far each mouth is open in every pose (G, K) [face units]; None where none meet.
 
-    The mean over a mouth's pairs of how much further apart than in the closed pose they are; what
-    half of `TOUCH` hides counts as closed.
+    The root mean square over a mouth's pairs of how much further apart than in the closed pose they
+    are, so that a mouth which rests open in its middle alone shows; what half of `TOUCH` hides
+    counts as closed. The gap of a mix of poses is at most the mix of their gaps.
 
     Parameters
     ----------
@@ -57,7 +58,8 @@ def gaps(shapes: np.ndarray, closed: int) -> np.ndarray | None:
     still = _apart(shapes[closed], found) + 0.5 * TOUCH
     opened = np.array([np.maximum(_apart(shape, found) - still, 0.0) for shape in shapes])
     mouth = mouths(shapes[closed][found].mean(axis=1))
-    return np.array([opened[:, mouth == g].mean(axis=1) for g in range(mouth.max() + 1)])
+    square = [np.mean(opened[:, mouth == g] ** 2, axis=1) for g in range(mouth.max() + 1)]
+    return np.sqrt(square)
 
 
 def _touching(points: np.ndarray) -> np.ndarray:

@@ -22,7 +22,7 @@ MEASURES = {
     "outside": "distance from the simplices, 1 is the length of a mean extreme",
     "objective": "1 is standing still at a mean extreme",
     "gap": "objective less its lower bound; 1 is standing still at a mean extreme",
-    "lip_bias": "0 to 1, gamma of the paper",
+    "lip_bias": "0 to 1, how nearly closed the lips are",
 }
 
 
