@@ -70,14 +70,14 @@ def test_closing_lips_draw_the_mouth_to_m(actor):
     apart = (upper - lower) / np.linalg.norm(upper - lower)
     wide = np.full(len(actor.offsets["play"]), made.closed_gap + 1.0)
     wide[10:20] = made.closed_gap
-    wide[30], wide[40] = np.nan, made.closed_gap + 0.02
+    wide[30], wide[35] = np.nan, made.closed_gap + 0.02
     actor.offsets["play"][:, lips] = np.concatenate(
         [(wide[:, None] * apart + lower) - upper, 0 * wide[:, None] * apart], axis=1
     )
     actor.write()
     found = layers.read(actor.transfer(lip_sigma=0.02))
     closed = np.zeros(len(wide))
-    closed[10:20], closed[40] = 1, np.exp(-0.5)
+    closed[10:20], closed[35] = 1, np.exp(-0.5)
     np.testing.assert_allclose(found.measures["lip_bias"], closed, atol=1e-3)
     speech = found.layers.index("speech")
     shown = closed == 1
@@ -92,7 +92,7 @@ def test_closing_lips_draw_the_mouth_to_m(actor):
     ]
     assert errors_of[0] < 0.6 * errors_of[1]
     kept = layers.read(actor.transfer(lip_sigma=0.02, lip_bias="gap"))
-    closed[40] = 0.5
+    closed[35] = 0.5
     np.testing.assert_allclose(kept.measures["lip_bias"], closed, atol=1e-3)
     free = layers.read(actor.transfer(lip_sigma=0))
     np.testing.assert_array_equal(free.measures["lip_bias"], 0)
