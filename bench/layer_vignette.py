@@ -40,7 +40,7 @@ class How(NamedTuple):
 
 
 class Solved(NamedTuple):
-    """Hold weights (T, R, J), coefficients (T, K), amplitudes (T, J), u (T, R, K), gamma (T,)."""
+    """Hold weights (T, R, J), coefficients (T, K), amplitudes (T, R), u (T, R, K), gamma (T,)."""
 
     weights: np.ndarray
     coefficients: np.ndarray

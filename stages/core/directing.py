@@ -1,6 +1,6 @@
 """Layers turned up and down over time, and put together into what moves a rig (K11 eq. 5).
 
-    u_lk(t) = w_l,layer(k)(t) a_k(t) amplitude_layer(k)(t) g_k(t)
+    u_lk(t) = w_l,layer(k)(t) a_k(t) amplitude_l(t) g_k(t)
 
 What a gain below one takes from an extreme goes to the layer's neutral, which moves nothing, so it
 is left out; the mask weights stay, so no other layer fills the place.
@@ -91,7 +91,7 @@ def composed(
     ----------
     weights : (T, R, J) float array, of the layers in each mask
     coefficients : (T, K) float array, of the extremes
-    amplitudes : (T, J) float array, of the layers
+    amplitudes : (T, R) float array, of the masks
     layer : (K,) int array, the layer of each extreme
     gain : (T, K) float array
 
@@ -104,11 +104,11 @@ def composed(
     ValueError
         if the forms do not fit together
     """
-    if weights.shape[::2] != amplitudes.shape or not (
+    if weights.shape[:2] != amplitudes.shape or not (
         coefficients.shape == gain.shape == (len(weights), len(layer))
     ):
         raise ValueError(
             f"weights {weights.shape}, coefficients {coefficients.shape}, amplitudes"
             f" {amplitudes.shape}, layer {np.shape(layer)} and gain {gain.shape} do not fit"
         )
-    return weights[:, :, layer] * (coefficients * amplitudes[:, layer] * gain)[:, None, :]
+    return (weights * amplitudes[:, :, None])[:, :, layer] * (coefficients * gain)[:, None, :]
