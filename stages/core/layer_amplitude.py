@@ -61,26 +61,19 @@ def _wanting(model, objective, point):
 
 def _descended(model, objective, point, ridge, opened, beyond):
     """Return v (R, J) and coefficients (K,) to which SQP comes from a point."""
-    regions, layers, count = model.sizes
-    limit = np.where(opened, 1.0 + beyond, 1.0)
-    size = np.repeat(limit, layers)
-    of_u = size[model.first]
-    quadratic = objective.quadratic._replace(
-        linear=objective.quadratic.linear * of_u,
-        gram=objective.quadratic.gram * np.outer(of_u, of_u),
+    regions, layers, _ = model.sizes
+    spare = np.where(opened, beyond, 1.0)
+    held = np.where(opened, ridge, 0.0)
+    wide = objective._replace(
+        pull=_with_spare(model, objective.pull, held),
+        target=_with_spare(model, objective.target, spare),
     )
-    ones, spare = np.ones(count), np.where(opened, 1.0 - 1.0 / limit, 1.0)
-    size = np.append(size, ones)
-    wide = layer_objective.Objective(
-        quadratic,
-        _with_spare(model, objective.pull * size**2, np.where(opened, ridge * limit**2, 0.0)),
-        _with_spare(model, objective.target / size, spare),
-        objective.fixed,
-    )
-    start = _with_spare(model, point / size, spare)
-    _, found = layer_search.descend(_roomy(model, opened), wide, start)
+    roomy, start = _roomy(model, opened), _with_spare(model, point, spare)
+    sums = np.ones(roomy.group.max() + 1)
+    sums[:regions] += np.where(opened, beyond, 0.0)
+    _, found = layer_search.descend(roomy, wide, start, sums)
     split = regions * (layers + 1)
-    return found[:split].reshape(regions, -1)[:, :-1] * limit[:, None], found[split:]
+    return found[:split].reshape(regions, -1)[:, :-1], found[split:]
 
 
 def _with_spare(model, values, spare):
@@ -91,8 +84,8 @@ def _with_spare(model, values, spare):
 
 
 def _roomy(model, opened):
-    """Return the model with a spare weight in each mask; closed masks have it to themselves."""
-    regions, layers, count = model.sizes
+    """Return the model with a spare weight in each mask; closed masks do not share theirs."""
+    regions, layers, _ = model.sizes
     masks = np.arange(regions)
     alone = np.where(opened, masks, regions + layers + masks)
     group = np.column_stack([np.tile(masks[:, None], layers), alone])
