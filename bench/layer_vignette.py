@@ -35,7 +35,7 @@ class How(NamedTuple):
     balance: str = "mask_variance"
     points: str = "both"
     lips_yield: str = "mouth"
-    lean: float = 0.03
+    lean: float = 0.01
     lips: str = "film"
 
 

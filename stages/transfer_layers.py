@@ -1,6 +1,7 @@
 """Find how much of each extreme of emotion, speech and blink a take shows (K11 section 4).
 
-The coefficients of a layer and the weights of a mask sum to one. What the lips' distance says of
+The coefficients of a layer and the weights of a mask sum to one; with `beyond` above 0 each mask
+has an amplitude too, so that a smile stays in a mouth that speaks. What the lips' distance says of
 their closure draws the lips' mask towards speech and speech towards its m; where that distance was
 not observed, or `lip_sigma` is 0, it says nothing. Each frame is drawn to the one before by
 `temporal`, which is brought to the take's rate. Frames with less than half of the coordinates have
@@ -36,7 +37,7 @@ def build_parser() -> argparse.ArgumentParser:
         ("temporal", "how strongly a frame clings to the one before, at 30 frames/s"),
         (
             "beyond",
-            "how far layers may go beyond their extremes, 0.2 up to 1.2 times; 0 not at all",
+            "how far a mask's layers may together exceed one, 0.5 up to 1.5 times; 0 not at all",
         ),
         ("lean", "how strongly a mask is left to the layers that move what is under it; 0 not"),
     ):

@@ -22,7 +22,7 @@ def follow(
     """Lower the objective of v and the coefficients, plus ``ridge sum_l (s_l - 1)^2``.
 
     Starts from the best at amplitude one, and opens the masks whose sum would rather be larger; one
-    that then would fall below one is closed again. So nothing is ever worse than at amplitude one.
+    that then falls below one is shut for good. So nothing is ever worse than at amplitude one.
 
     Parameters
     ----------
@@ -36,16 +36,19 @@ def follow(
     point : (R * J + K,) float array, weights w and coefficients
     amplitudes : (R,) float array
     """
-    regions, layers, _ = model.sizes
     opened = _wanting(model, objective, point)
+    shut = np.zeros(len(opened), bool)
     while opened.any():
         v, coefficients = _descended(model, objective, point, ridge, opened, beyond)
         sums = v.sum(axis=1)
-        if (sums[opened] >= 1.0).all():
+        shut |= opened & (sums < 1.0)
+        more = _wanting(model, objective, np.append(v, coefficients)) & ~opened
+        changed = (opened | more) & ~shut
+        if np.array_equal(changed, opened):
             amplitudes = np.where(opened, np.minimum(sums, 1.0 + beyond), 1.0)
             return np.append(v / sums[:, None], coefficients), amplitudes
-        opened &= sums >= 1.0
-    return point, np.ones(regions)
+        opened = changed
+    return point, np.ones(len(model.masks))
 
 
 def _wanting(model, objective, point):

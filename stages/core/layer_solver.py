@@ -23,7 +23,7 @@ class Settings(NamedTuple):
     Attributes
     ----------
     temporal : weight of the last frame, at the frames' own rate
-    beyond : how far amplitudes, of which each mask has one, may exceed one
+    beyond : how far the amplitude of each mask may exceed one, see `layer_amplitude`
     lean : pull of the weights towards the layers that move what is under each mask
     lips_yield : the part of the data term that ``1 - g`` stands before: `face`, all of it, as
         published; `mouth`, what lies under the lips' mask, so that closed lips do not hold the

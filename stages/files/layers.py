@@ -2,9 +2,9 @@
 
 Columns: `weight.<mask>.<layer>`, how much a layer has to say in a mask, one in sum over the layers;
 `coefficient.<layer>.<name>`, how much of each extreme, one in sum over a layer;
-`amplitude.<mask>`, what all weights in a mask are multiplied by, 1 unless layers may go beyond; and the measures of
-`MEASURES` with `confidence`. NaN where too little was observed. Layers and extremes that actor and
-character do not share have no columns.
+`amplitude.<mask>`, what all layers in a mask are multiplied by, 1 unless they may go beyond one in
+sum; and the measures of `MEASURES` with `confidence`. NaN where too little was observed. Layers and
+extremes that actor and character do not share have no columns.
 """
 
 import dataclasses
