@@ -22,6 +22,7 @@ RIGS = (
     "key_reduction_trial",
     "dynamics_trial",
     "layer_trial",
+    "real_files",
 )
 SPEECH = ("sync_trial", "phone_trial")
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from bench import layer_seams, layer_vignette
-from stages.core import directing
+from stages.core import directing, layer_solver
 from stages.files import series
 
 How = layer_vignette.How
@@ -18,7 +18,12 @@ SIGMAS = (0.0, 0.01, 0.02, 0.03, 0.05)
 RATES = ("recall", "prec.", "rec. +-1", "prec. +-1")
 HEADS = [*RATES, *(f"t. {rate}" for rate in RATES)]
 # gaps, less that of closed lips, below which lips may be taken for closed [face units]
-SEEN = {"film": (0.01, 0.02, 0.03), "markers": (0.001, 0.01, 0.03), "either": (0.005, 0.015)}
+SEEN = {
+    "film": (0.01, 0.02, 0.03),
+    "markers": (0.001, 0.01, 0.03),
+    "either": (0.005, 0.015),
+    "told": (0.008, 0.012),
+}
 DIRECTED = {
     "joy": ("serenity", "joy", "ecstasy"),
     "surprise": ("surprise", "amazement"),
@@ -54,7 +59,8 @@ def closures(take: layer_vignette.Take) -> list[str]:
     every = np.ones(len(true), bool)
     cases = {"planted": take.planted}
     cases |= {f"sigma {sigma:g}": take.solve(How(lip_sigma=sigma)).u for sigma in SIGMAS}
-    cases["sigma 0.02, face yields"] = take.solve(How(lips_yield="face")).u
+    cases["sigma 0.02, published"] = take.solve(How(lip_bias="published")).u
+    cases["sigma 0.012, told"] = take.solve(How(lip_sigma=0.012, lips="told")).u
     for lips in ("markers", "either", "truth"):
         cases[f"sigma 0.02, gap by {lips}"] = take.solve(How(lips=lips)).u
     cases["sigma 0.02, temporal 0"] = take.solve(How(temporal=0.0)).u
@@ -68,6 +74,9 @@ def closures(take: layer_vignette.Take) -> list[str]:
     for name in layer_vignette.CHARACTERS:
         body = layer_vignette.body(take, name)
         gaps = {label: layer_seams.gaps(body, u) for label, u in cases.items()}
+        for lips in ("film", "told", "truth"):
+            how = How(lip_sigma=0.012, lip_bias="gap", lips=lips, character=name)
+            gaps[f"sigma 0.012, {lips}, own gap"] = layer_seams.gaps(body, take.solve(how).u)
         gaps["as delivered"] = layer_seams.gaps(body, delivered(take, body))
         for mouth in gaps["planted"]:
             title = f"{name} {mouth}" if name == "globe" else name
@@ -100,9 +109,10 @@ def costs(take: layer_vignette.Take) -> list[str]:
         own = body.moving & (body.masks[upper] > 0.5)
         true = layer_vignette.displaced(body, take.planted, own)
         apart = layer_vignette.displaced(body, free.u, own)
-        for sigma in (0.02, 0.05):
-            for yields in ("face", "mouth"):
-                biased = take.solve(How(lip_sigma=sigma, lips_yield=yields))
+        for sigma in (0.012, 0.02):
+            for bias in layer_solver.LIP_BIASES:
+                how = How(lip_sigma=sigma, lip_bias=bias, lips="told", character=name)
+                biased = take.solve(how)
                 held = layer_vignette.displaced(body, biased.u, own)
                 sure = biased.gamma > SURE
                 weight, other = (each.weights[sure, mouth, emotion] for each in (biased, free))
@@ -111,7 +121,7 @@ def costs(take: layer_vignette.Take) -> list[str]:
                 cells += [((weight < GONE) & (other > THERE)).mean()]
                 cells += [slow.mean(), fast.mean(), (slow < STILL * fast).mean()]
                 cells += [np.linalg.norm(m - true, axis=2)[sure].mean() for m in (held, apart)]
-                label = f"{name}, sigma {sigma:g}, {yields} yields"
+                label = f"{name}, sigma {sigma:g}, {bias}"
                 lines.append(layer_vignette.row(label, cells, 10, first=42))
     lines[0] = layer_vignette.row("", [*heads, "error on", "off"], 10, first=42)
     return lines
@@ -148,7 +158,9 @@ def directed(take: layer_vignette.Take) -> list[str]:
     parts = solved.weights, solved.coefficients, solved.amplitudes, made.layer
     for label, extremes in chosen.items():
         change = directing.Direction(np.array(extremes, int), 0.0, -np.inf, np.inf, 0.2)
-        u = directing.composed(*parts, directing.gains(time_s, len(made.extremes), [change]))
+        gains = directing.gains(time_s, len(made.extremes), [change])
+        # the characters' own neutrals are those of their layers
+        u = directing.composed(*parts, gains, np.full(len(made.layers), -1))
         same = np.array_equal(u[:, :, spoken], solved.u[:, :, spoken])
         cells = []
         for body in bodies.values():

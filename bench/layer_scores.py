@@ -141,9 +141,9 @@ def peaks_kept(closing, truth, closeness=None) -> np.ndarray:
     return closing[peak] / truth[peak]
 
 
-def closed_lips(model, face, performance, lips_yield) -> tuple[np.ndarray, np.ndarray]:
+def closed_lips(model, face, performance, lip_bias) -> tuple[np.ndarray, np.ndarray]:
     """Return residuals (R,) where lips are closed [mm], and what is left of the blinks there."""
-    settings = layer_solver.Settings(0.05, 0.0, lips_yield)
+    settings = layer_solver.Settings(0.05, 0.0, lip_bias)
     got = layer_solver.solve(model, settings, performance.frames, performance.closeness)
     shape = layer_faces.composed(face, got.weights, got.coefficients)
     wrong = ((shape - performance.frames) * face.unit)[performance.closeness > 0.9]

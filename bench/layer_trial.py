@@ -189,11 +189,11 @@ def _smoothing(face, model, performance) -> None:
 
 def _lips(face, model, performance) -> None:
     """Print what closed lips cost the rest of the face, as published and not."""
-    for lips_yield in layer_solver.LIPS_YIELD:
-        residuals, left = layer_scores.closed_lips(model, face, performance, lips_yield)
+    for bias in ("mouth", "published"):
+        residuals, left = layer_scores.closed_lips(model, face, performance, bias)
         text = ", ".join(f"{name} {e:.2f}" for name, e in zip(MASKS, residuals, strict=True))
         mean = f", {len(left)} blinks {left.mean():.2f} left" if len(left) else ""
-        _say(f"  closed lips, {lips_yield} yields: residual [mm] {text}{mean}")
+        _say(f"  closed lips, {bias}: residual [mm] {text}{mean}")
 
 
 def _beyond(face, extra) -> None:

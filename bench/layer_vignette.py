@@ -16,6 +16,7 @@ from stages.core import (
     layer_model,
     layer_solver,
     lip_closeness,
+    lip_estimate,
     local_shapes,
 )
 from stages.files import layer_points, lip_gap, rig, simplices
@@ -27,16 +28,17 @@ LIP_MARKERS, UNIT_MARKERS = "MULP,MLLP", ("RECO", "LECO")
 
 
 class How(NamedTuple):
-    """Say how layers are solved, as characters.tsv does, and which points are seen."""
+    """Say how layers are solved, as characters.tsv does, which points are seen, and for whom."""
 
     lip_sigma: float = 0.02
     temporal: float = 0.05
     beyond: float = 0.0
     balance: str = "mask_variance"
     points: str = "both"
-    lips_yield: str = "mouth"
+    lip_bias: str = "mouth"
     lean: float = 0.01
     lips: str = "film"
+    character: str = CHARACTERS[0]
 
 
 class Solved(NamedTuple):
@@ -58,8 +60,9 @@ class Take:
     show : folder of the show
     made : what actor and characters share; all characters of the example share the same
     offsets : (T, D) float array [face units]
-    gaps : of the lips by `film`, `markers`, `either` or `truth`, less that of closed ones, (T,)
-        float arrays [face units]
+    gaps : of the lips by `film`, `markers`, `either`, `told` by all about them, or `truth`, less
+        that of closed ones, (T,) float arrays [face units]
+    opened : character -> (K,) float array, how far its extremes' lips are open [face units]
     rate : frames per second
     truth : what the generator knows, by name
     lips_apart : (2,) float array [face units], from the lower lip to the upper in the neutral
@@ -71,6 +74,7 @@ class Take:
     made: simplices.Simplices
     offsets: np.ndarray
     gaps: dict
+    opened: dict
     rate: float
     truth: dict
     lips_apart: np.ndarray
@@ -80,7 +84,8 @@ class Take:
     def solve(self, how: How) -> Solved:
         """Return the layers of the vignette."""
         if how not in self.kept:
-            self.kept[how] = solve(self.made, self.offsets, self.gaps[how.lips], self.rate, how)
+            made = dataclasses.replace(self.made, gaps=self.opened[how.character])
+            self.kept[how] = solve(made, self.offsets, self.gaps[how.lips], self.rate, how)
         return self.kept[how]
 
     def fresh(self, made: simplices.Simplices) -> None:
@@ -123,11 +128,14 @@ def read(show: Path) -> Take:
     truth = dict(np.load(show / "data_example/truth" / f"{SHOT}.npz"))
     count = len(points.frame)
     truth = {name: v[:count] if len(v) == count + 1 else v for name, v in truth.items()}
+    offsets = layer_points.flat(points, made.layout)
+    told = lip_estimate.Estimate(made.gap_weights, made.gap_start)
     take = Take(
         show,
         made,
-        layer_points.flat(points, made.layout),
-        _gaps(show, made, truth),
+        offsets,
+        _gaps(show, made, truth) | {"told": lip_estimate.gap(told, offsets * made.scale)},
+        {CHARACTERS[0]: made.gaps},
         float(points.rate),
         truth,
         _lips_apart(made, points),
@@ -135,7 +143,9 @@ def read(show: Path) -> Take:
     )
     take.planted = planted(take)
     for name in CHARACTERS[1:]:
-        take.fresh(simplices.read(cast / name / "simplices.npz"))
+        other = simplices.read(cast / name / "simplices.npz")
+        take.fresh(other)
+        take.opened[name] = other.gaps
     return take
 
 
@@ -143,7 +153,9 @@ def _lips_apart(made: simplices.Simplices, points: layer_points.LayerPoints) -> 
     """Return the way from the lower lip to the upper one on the neutral film (2,)."""
     film = [each.kind for each in points.layout].index("video")
     names = points.layout[film].names
-    upper, lower = (points.neutrals[film][names.index(n)] for n in made.lip_points.split(","))
+    upper, lower = (
+        points.neutrals[film][names.index(n)] for n in made.lip_points.split(";")[0].split(",")
+    )
     return upper - lower
 
 
@@ -195,9 +207,10 @@ def solve(
     if how.lip_sigma > 0:
         gamma = lip_closeness.closeness(gap, 0.0, how.lip_sigma)
     lips = simplices.lip_indices(made) if gamma.any() else (-1, -1, -1)
-    model = layer_model.build(basis * scale[:, None], made.layer, masks, *lips)
+    opened = made.gaps if gamma.any() else None
+    model = layer_model.build(basis * scale[:, None], made.layer, masks, *lips, opened)
     temporal = layer_solver.temporal_at(rate, how.temporal)
-    settings = layer_solver.Settings(temporal, how.beyond, how.lips_yield, how.lean)
+    settings = layer_solver.Settings(temporal, how.beyond, how.lip_bias, how.lean)
     found = layer_solver.solve(model, settings, offsets[:, own] * scale, gamma)
     u = layer_composition.displacements(
         made.layer, found.weights, found.coefficients, found.amplitudes
@@ -242,7 +255,7 @@ def lone(take: Take, extreme: tuple[str, str]) -> np.ndarray:
 
 def lip_gap_of(take: Take, offsets: np.ndarray) -> np.ndarray:
     """Return the gap (T,) of the lips on the film, less that of closed ones, of offsets (T, D)."""
-    upper, lower = take.made.lip_points.split(",")
+    upper, lower = take.made.lip_points.split(";")[0].split(",")
     names = layer_points.point_names(take.made.layout)
     point_of = layer_points.point_of(take.made.layout)
     at = [np.flatnonzero(point_of == names.index(name)) for name in (upper, lower)]

@@ -4,7 +4,7 @@ Each extreme is the actor's points on its frame less the neutral: markers, point
 both in one vector, brought to one measure by `balance`. What only one side has is reported and the
 rest is used, as long as a layer has two extremes. Points that were not observed on one of the
 frames are left out and reported. For the lip bias the distance of the lips on the frame of
-speech m counts as closed.
+speech m counts as closed, and where the character's lips touch in its speech m, they should.
 """
 
 import argparse
@@ -13,14 +13,15 @@ from collections.abc import Sequence
 import numpy as np
 
 from stages import cli
-from stages.core import coordinate_balance, near_extremes
+from stages.core import coordinate_balance, lip_seam, near_extremes
 from stages.files import (
     actor_masks,
+    character_lips,
     errors,
     expressions,
     extremes,
     layer_points,
-    lip_gap,
+    lip_shots,
     picked_frames,
     poses,
     rig,
@@ -31,6 +32,7 @@ SHOWN = 3  # faults that an error names
 MOST_LEFT_OUT = 0.5  # of the points
 SAME = 0.05  # of the mean distance in a layer, between extremes that are one
 STILL = 1e-6  # what rounding may move [face units]
+SHUT = 0.0125  # gap of closed lips [face units]
 CLOSED = "_".join(extremes.CLOSED_LIPS)
 Row = tuple[str, str, str, str]
 
@@ -79,16 +81,25 @@ def main(argv: Sequence[str]) -> None:
     basis = np.stack([picked_frames.offset_of(actor, row) for row in shared], axis=1)
     layout, basis, missing = _observed(options, actor.layout, shared, basis)
     layout, basis, masks, unused = _masked(options, actor, layout, basis)
-    _check_masks(options, masks.names)
+    own = rig.read_any(options.rig).mask_names
+    actor_masks.check_names(options.mask_table, options.actor, masks.names, own)
     layers = list(dict.fromkeys(row.layer for row in shared))
     layer = np.array([layers.index(row.layer) for row in shared])
     mask_weights = masks.weights[:, layer_points.point_of(layout)]
     scale = _balance(options, layout, basis, mask_weights)
     _check_apart(table, shared, basis, scale, layer)
-    lip_mask, closed_gap = _lips(options, actor, picked, shared, masks.names)
+    names = [(row.layer, row.name) for row in shared]
+    lips = _lips(options, actor, picked, shared, masks.names)
+    lip_mask, closed_gap, opened, told = "", np.nan, np.zeros(len(shared)), (0.0 * scale, 0.0)
+    if lips is not None:
+        lip_mask, closed = options.lip_mask, names.index(extremes.CLOSED_LIPS)
+        seen = lip_shots.at(lips, actor, shared)
+        closed_gap, opened = float(seen[closed]), _open(options, names, seen)
+        under = mask_weights[masks.names.index(lip_mask)] > 0.5
+        told = lip_shots.told(lips, actor, layout, scale, under, basis[:, closed])
     made = simplices.Simplices(
         layers,
-        [(row.layer, row.name) for row in shared],
+        names,
         masks.names,
         layout,
         options.points,
@@ -99,6 +110,8 @@ def main(argv: Sequence[str]) -> None:
         options.lip_points if lip_mask else "",
         lip_mask,
         closed_gap,
+        opened,
+        *told,
     )
     sources = [table, options.mask_table, *options.expressions, options.poses]
     simplices.write(options.simplices, made, {"balance": options.balance}, sources)
@@ -186,18 +199,6 @@ def _masked(
     return layer_points.without(layout, left_out.tolist()), basis[kept], masks, report
 
 
-def _check_masks(options: argparse.Namespace, masks: Sequence[str]) -> None:
-    """Refuse masks that the character does not have, or lacks."""
-    own = rig.read_any(options.rig).mask_names
-    for name in [*masks, *own]:
-        if name not in own:
-            message = f"the character has no mask '{name}', its masks are {', '.join(own)}"
-            raise errors.InputError(options.mask_table, f"{message}: use the same names")
-        if name not in masks:
-            message = f"lacks the character's mask '{name}' for actor {options.actor}"
-            raise errors.InputError(options.mask_table, f"{message}: give it points")
-
-
 def _balance(
     options: argparse.Namespace, layout: layer_points.Layout, basis: np.ndarray, masks: np.ndarray
 ) -> np.ndarray:
@@ -241,17 +242,13 @@ def _lips(
     picked: Sequence[expressions.Picked],
     shared: Sequence[expressions.Picked],
     masks: Sequence[str],
-) -> tuple[str, float]:
-    """Return the mask of the lips and the distance at which they are closed."""
-    speech, name = extremes.CLOSED_LIPS
-    if options.lip_sigma == 0 or all(row.layer != speech for row in shared):
-        return "", float("nan")
+) -> dict[str, np.ndarray] | None:
+    """Return the gap of the lips in every shot (T,) [face units]; None without a lip bias."""
+    if options.lip_sigma == 0 or all(row.layer != extremes.CLOSED_LIPS[0] for row in shared):
+        return None
     off = "set lip_sigma to 0 in characters.tsv to do without the lip bias"
-    closed = [row for row in picked if (row.layer, row.name) == extremes.CLOSED_LIPS]
-    if not closed:
-        message = f"{options.actor} has no row for {speech} {name}, the closed lips"
-        raise errors.InputError(options.expression_table, f"{message}: add it, or {off}")
-    if closed[0] not in shared:
+    closed = lip_shots.closed_row(options.expression_table, options.actor, picked, off)
+    if closed not in shared:
         message = f"the character has no pose {CLOSED}, the closed lips"
         raise errors.InputError(options.poses, f"{message}: make it, or {off}")
     if options.lip_mask not in masks:
@@ -260,14 +257,35 @@ def _lips(
     if not options.lip_points:
         message = "is empty: name two points of the lips in sessions.tsv"
         raise errors.InputError("--lip-points", f"{message}, or {off}")
-    path = options.expressions[options.shots.index(closed[0].shot)]
-    frames = actor.frames[closed[0].shot]
-    gap = lip_gap.read(path, options.lip_points, np.array(list(frames)))
-    value = float(gap[frames[closed[0].frame]])
-    if not np.isfinite(value):
-        message = f"line {closed[0].line}: {options.lip_points} were not observed on that frame"
-        raise errors.InputError(options.expression_table, f"{message}: pick another for {name}")
-    return options.lip_mask, value
+    gaps = lip_shots.read(options.expressions, options.shots, options.lip_points, actor)
+    if not np.isfinite(lip_shots.at(gaps, actor, [closed])).all():
+        message = f"line {closed.line}: {options.lip_points} were not observed on that frame"
+        cure = f"pick another for {closed.name}"
+        raise errors.InputError(options.expression_table, f"{message}: {cure}")
+    return gaps
+
+
+def _open(
+    options: argparse.Namespace, names: list[tuple[str, str]], gaps: np.ndarray
+) -> np.ndarray:
+    """Return how far the lips of each extreme are open (K,), given the actor's gaps (K,)."""
+    closed = names.index(extremes.CLOSED_LIPS)
+    own = np.maximum(gaps - gaps[closed], 0.0)
+    shapes = character_lips.read(rig.read_any(options.rig), options.lip_mask, names)
+    found = None if shapes is None else lip_seam.gaps(shapes, closed)
+    if found is None:
+        message = f"no vertices of mask {options.lip_mask} touch in {CLOSED} and part in a pose"
+        cli.logger.info("%s: %s, the actor's gaps are used", options.rig, message)
+        if np.isnan(own).any():
+            name = "_".join(names[int(np.isnan(own).argmax())])
+            message = f"{options.lip_points} were not observed on the frame of {name}"
+            raise errors.InputError(options.expression_table, f"{message}: pick another")
+        return own
+    apart = [n for n, a, b in zip(names, own, found, strict=True) if a < SHUT and b > 4 * SHUT]
+    if apart:
+        text = ", ".join("_".join(name) for name in apart)
+        cli.logger.info("%s: open where the actor's lips are closed: %s", options.poses, text)
+    return found
 
 
 if __name__ == "__main__":

@@ -1,7 +1,8 @@
 """Put the layers of a take together for its character, each turned up or down as directed.
 
-Writes the weight of every column of the rig, ``u_lk = w_lj a_k amplitude_l gain``; an extreme that
-the actor lacks has weight 0. Frames that were not observed stay NaN.
+Writes the weight of every column of the rig, ``u_lk = w_lj a_k amplitude_l gain``; what gains below
+one take goes to the layer's neutral, if that is a pose of its own. An extreme that the actor lacks
+has weight 0. Frames that were not observed stay NaN.
 """
 
 import argparse
@@ -73,6 +74,7 @@ def main(argv: Sequence[str]) -> None:
         take.amplitudes,
         np.array([take.layers.index(layer) for layer, _ in take.extremes]),
         directing.gains(take.time_s, len(take.extremes), directions),
+        np.array(extremes.rests(take.layers, take.extremes)),
     )
     # a rest that is not observed is not known either: whole frames are filled later
     rest = np.where(np.isfinite(take.weights).all(axis=(1, 2)), 0.0, np.nan)

@@ -48,7 +48,7 @@ def main(argv: Sequence[str]) -> None:
     try:
         motion = between_poses.learn(takes, rates)
     except ValueError as error:
-        message = f"{error}: mark longer shots as basis, or set gap_filling to linear"
+        message = f"{error}: mark longer shots as basis, or do without dynamics"
         raise errors.InputError(options.solutions[0], message) from error
     whole = [
         between_poses.fill(motion, take, rate) for take, rate in zip(takes, rates, strict=True)

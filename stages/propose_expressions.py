@@ -95,6 +95,8 @@ def main(argv: Sequence[str]) -> None:
     for flag in ("expressions", "emotions", "videos"):
         if len(getattr(arguments, flag)) != len(arguments.shots):
             raise errors.InputError(f"--{flag}", "give one for each shot")
+    if len(arguments.phones) != len(arguments.phone_shots):
+        raise errors.InputError("--phones", "give one for each of --phone-shots")
     known = extremes.read(arguments.extremes)
     order = {(each.layer, each.name): place for place, each in enumerate(known)}
     frames = basis_frames.read(

@@ -1,11 +1,13 @@
 """Find how much of each extreme of emotion, speech and blink a take shows (K11 section 4).
 
 The coefficients of a layer and the weights of a mask sum to one; with `beyond` above 0 each mask
-has an amplitude too, so that a smile stays in a mouth that speaks. What the lips' distance says of
-their closure draws the lips' mask towards speech and speech towards its m; where that distance was
-not observed, or `lip_sigma` is 0, it says nothing. Each frame is drawn to the one before by
-`temporal`, which is brought to the take's rate. Frames with less than half of the coordinates have
-no layers, and confidence 0; frames after them start from the last that has.
+has an amplitude too, so that a smile stays in a mouth that speaks. While the actor's lips are
+closed the gap of the character's is one more row of data; or, as published, its lips' mask is drawn
+to speech and speech to its m. Where the lips' distance was not observed, or `lip_sigma` is 0, it
+says nothing. Save as published, all points about the lips tell it, not the two alone. Each frame is
+drawn to the one before by `temporal`, which is brought to the take's rate. Frames with less than
+half of the coordinates have no layers, and confidence 0; frames after them start from the last that
+has.
 """
 
 import argparse
@@ -14,10 +16,18 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from stages import cli
-from stages.core import layer_composition, layer_model, layer_solver, lip_closeness
+from stages.core import (
+    layer_composition,
+    layer_model,
+    layer_solver,
+    lip_closeness,
+    lip_estimate,
+)
 from stages.files import errors, extremes, layer_points, layers, lip_gap, simplices
 
 CHUNK = 1024
+# beyond this a frame is that before, or a bound none, to every digit
+MOST = 1e6
 Solve = Callable[
     [layer_model.Model, layer_solver.Settings, np.ndarray, np.ndarray], layer_solver.Solution
 ]
@@ -43,11 +53,11 @@ def build_parser() -> argparse.ArgumentParser:
     ):
         parser.add_argument(f"--{name}", required=True, type=float, help=text)
     parser.add_argument(
-        "--lips-yield",
-        default="face",
-        choices=layer_solver.LIPS_YIELD,
-        help="what closed lips keep from following the points: the whole face, as published, or"
-        " the mouth alone",
+        "--lip-bias",
+        required=True,
+        choices=layer_solver.LIP_BIASES,
+        help="what closed lips do: keep the character's lips closed; draw the mouth to speech m;"
+        " or that while the whole face gives way, as published",
     )
     parser.add_argument("--layers", required=True, help="layers to write, .parquet")
     return parser
@@ -68,21 +78,22 @@ def run(options: argparse.Namespace, solver: str, solve: Solve) -> None:
     solve : model, settings, frames (T, D) and closeness (T,) to the solution of all frames
     """
     for name in ("lip_sigma", "temporal", "beyond", "lean"):
-        if not 0 <= getattr(options, name) < np.inf:
+        if not 0 <= getattr(options, name) <= MOST:
             flag = f"--{name.replace('_', '-')}"
-            raise errors.InputError(flag, f"is {getattr(options, name):g}: give 0 or more")
+            raise errors.InputError(flag, f"is {getattr(options, name):g}: give 0 to {MOST:g}")
     made = simplices.read(options.simplices)
     points = layer_points.read(options.expression, made.driven_by)
     if missing := layer_points.check_within(options.expression, points, made.layout):
         cli.logger.info("not used, the shot lacks them: %s", ", ".join(missing))
-    closeness = _closeness(options, made, points.frame)
     offsets = layer_points.flat(points, made.layout)
+    closeness = _closeness(options, made, points.frame, offsets * made.scale)
     lips = simplices.lip_indices(made) if closeness.any() else (-1, -1, -1)
+    gaps = made.gaps if closeness.any() else None
     model = layer_model.build(
-        made.basis * made.scale[:, None], made.layer, made.mask_weights, *lips
+        made.basis * made.scale[:, None], made.layer, made.mask_weights, *lips, gaps
     )
     temporal = layer_solver.temporal_at(float(points.rate), options.temporal)
-    settings = layer_solver.Settings(temporal, options.beyond, options.lips_yield, options.lean)
+    settings = layer_solver.Settings(temporal, options.beyond, options.lip_bias, options.lean)
     solution = solve(model, settings, offsets * made.scale, closeness)
     measures = {
         "residual": _residual(made, solution, offsets),
@@ -113,13 +124,17 @@ def run(options: argparse.Namespace, solver: str, solve: Solve) -> None:
 
 
 def _closeness(
-    options: argparse.Namespace, made: simplices.Simplices, frame: np.ndarray
+    options: argparse.Namespace, made: simplices.Simplices, frame: np.ndarray, offsets: np.ndarray
 ) -> np.ndarray:
-    """Return how nearly closed the lips are on every frame (T,)."""
+    """Return how nearly closed the lips are on every frame (T,), by balanced offsets (T, D)."""
     if options.lip_sigma == 0 or extremes.CLOSED_LIPS[0] not in made.layers:
         return np.zeros(len(frame))
     simplices.check_lips(options.simplices, made, options.lip_points, options.lip_mask)
     gap = lip_gap.read(options.expression, options.lip_points, frame)
+    if options.lip_bias != "published" and made.gap_weights.any():
+        told = lip_estimate.Estimate(made.gap_weights, made.gap_start)
+        estimated = lip_estimate.gap(told, offsets) + made.closed_gap
+        gap = np.where(np.isnan(estimated), gap, estimated)
     return lip_closeness.closeness(gap, made.closed_gap, options.lip_sigma)
 
 

@@ -2,8 +2,9 @@
 
     u_lk(t) = w_l,layer(k)(t) a_k(t) amplitude_l(t) g_k(t)
 
-What a gain below one takes from an extreme goes to the layer's neutral, which moves nothing, so it
-is left out; the mask weights stay, so no other layer fills the place.
+What a gain below one takes from an extreme goes to the layer's neutral: where that is the
+character's own, it moves nothing and is left out. The mask weights stay, so no other layer fills
+the place.
 """
 
 from collections.abc import Sequence
@@ -47,9 +48,13 @@ def presence(time_s: np.ndarray, start_s: float, end_s: float, fade_s: float) ->
     Raises
     ------
     ValueError
-        if the range is shorter than its fades
+        if the range is empty or shorter than its fades, or these are negative
     """
-    if not end_s - start_s >= 2 * fade_s >= 0 or start_s == end_s:
+    if not fade_s >= 0:
+        raise ValueError(f"a fade of {fade_s:g} s is negative")
+    if not end_s > start_s:
+        raise ValueError(f"the end, {end_s:g} s, is not after the start, {start_s:g} s")
+    if not end_s - start_s >= 2 * fade_s:
         raise ValueError(f"{start_s:g} s to {end_s:g} s leaves no room for fades of {fade_s:g} s")
     inside = (time_s >= start_s) & (time_s < end_s)
     if not fade_s:
@@ -84,8 +89,11 @@ def composed(
     amplitudes: np.ndarray,
     layer: np.ndarray,
     gain: np.ndarray,
+    rest: np.ndarray,
 ) -> np.ndarray:
     """Multiply the factors of the layers into weights of extremes under masks.
+
+    A layer's neutral r has ``a_r g_r + sum_k max(1 - g_k, 0) a_k`` in place of ``a_r g_r``.
 
     Parameters
     ----------
@@ -94,6 +102,7 @@ def composed(
     amplitudes : (T, R) float array, of the masks
     layer : (K,) int array, the layer of each extreme
     gain : (T, K) float array
+    rest : (J,) int array, the neutral of each layer among the extremes; -1 where it is none of them
 
     Returns
     -------
@@ -111,4 +120,8 @@ def composed(
             f"weights {weights.shape}, coefficients {coefficients.shape}, amplitudes"
             f" {amplitudes.shape}, layer {np.shape(layer)} and gain {gain.shape} do not fit"
         )
-    return (weights * amplitudes[:, :, None])[:, :, layer] * (coefficients * gain)[:, None, :]
+    shown, taken = coefficients * gain, coefficients * np.maximum(1.0 - gain, 0.0)
+    for number, extreme in enumerate(rest):
+        if extreme >= 0:
+            shown[:, extreme] += taken[:, layer == number].sum(axis=1)
+    return (weights * amplitudes[:, :, None])[:, :, layer] * shown[:, None, :]

@@ -101,7 +101,7 @@ class Removal:
         low, high, frame, place = low[known], high[known], frame[known], place[known]
         added = curves.off(channel, frame, low, high) - curves.wrong[channel, frame]
         ahead = moved[frame, place] + added[:, None] * delta[place]
-        blocked[known] = np.einsum("nd,nd->n", ahead, ahead) > tolerance**2
+        blocked[known] = np.sum(ahead**2, axis=1) > tolerance**2
         return blocked
 
     def _entry(self, channel: int, frame: int) -> tuple[float, int]:

@@ -30,6 +30,8 @@ class Model(NamedTuple):
     group : (R * J + K,) int array, the simplex of each entry of the solver's point
     mask_group : (R * K,) int array, the mask of each displacement
     shares : (R * J,) float array, of each layer in the mean squared extremes under a mask
+    gap_row : (R * K,) float array, the lips' gap by displacements, over the root mean square of
+        the extremes' gaps; zero where no gaps are known
     """
 
     basis: np.ndarray
@@ -48,6 +50,7 @@ class Model(NamedTuple):
     group: np.ndarray
     mask_group: np.ndarray
     shares: np.ndarray
+    gap_row: np.ndarray
 
     @property
     def sizes(self) -> tuple[int, int, int]:
@@ -72,7 +75,7 @@ class Quadratic(NamedTuple):
     span: float
 
 
-def _check(basis, layer, masks, lip_mask, speech_layer, closed):
+def _check(basis, layer, masks, gaps, lip_mask, speech_layer, closed):
     """Refuse arrays that do not fit together."""
     if basis.ndim != 2 or layer.shape != basis.shape[1:] or masks.shape[1:] != basis.shape[:1]:
         raise ValueError(
@@ -93,6 +96,10 @@ def _check(basis, layer, masks, lip_mask, speech_layer, closed):
             f"lip_mask, speech_layer and closed {bias} must be all -1, or one of {len(masks)} masks"
             f" and an extreme of that layer"
         )
+    if gaps.shape != layer.shape or not ((gaps >= 0.0) & (gaps < np.inf)).all():
+        raise ValueError(f"gaps {gaps.shape} must be those of {len(layer)} extremes, at least zero")
+    if gaps.any() and lip_mask < 0:
+        raise ValueError(f"gaps up to {gaps.max()} need a lip mask")
 
 
 def _gram(basis, masks, pairs, share=1.0):
@@ -124,6 +131,7 @@ def build(
     lip_mask: int = -1,
     speech_layer: int = -1,
     closed: int = -1,
+    gaps: np.ndarray | None = None,
 ) -> Model:
     """Precompute everything that does not depend on a frame (Kholgade 2011, eq. 4).
 
@@ -134,6 +142,8 @@ def build(
     masks : (R, D) float array, at least zero, one at every coordinate in sum
     lip_mask, speech_layer, closed : int
         the mask and layer of the lip bias and the index of its extreme /m/; all -1 for none
+    gaps : (K,) float array, how far the lips of each extreme stand apart, zero where closed; None
+        = not known
 
     Raises
     ------
@@ -142,7 +152,8 @@ def build(
     """
     basis, masks = np.array(basis, float), np.array(masks, float)
     layer = np.array(layer, np.int64)
-    _check(basis, layer, masks, lip_mask, speech_layer, closed)
+    gaps = np.zeros(len(layer)) if gaps is None else np.array(gaps, float)
+    _check(basis, layer, masks, gaps, lip_mask, speech_layer, closed)
     regions, layers, count = len(masks), int(layer.max()) + 1, len(layer)
     pairs = np.ascontiguousarray(np.argwhere((masks @ masks.T) > 0.0), np.int64)
     gram = _gram(basis, masks, pairs)
@@ -168,7 +179,16 @@ def build(
         np.concatenate([np.repeat(np.arange(regions), layers), regions + layer]),
         mask_group,
         _shares(diagonal.reshape(regions, count), layer),
+        _gap_row(gaps, regions, lip_mask),
     )
+
+
+def _gap_row(gaps, regions, lip_mask):
+    """Return the gap of the lips by displacements, in units of its root mean square."""
+    found = np.zeros((regions, len(gaps)))
+    if gaps.any():
+        found[lip_mask] = gaps / np.sqrt(np.mean(gaps**2))
+    return found.ravel()
 
 
 def _shares(squares, layer):

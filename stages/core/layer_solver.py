@@ -11,10 +11,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stages.core import layer_amplitude, layer_model, layer_objective, layer_search
+from stages.core import layer_amplitude, layer_gap, layer_model, layer_objective, layer_search
 
 SOFTNESS = 1e-3
-LIPS_YIELD = ("face", "mouth")
+LIP_BIASES = ("gap", "mouth", "published")
 
 
 class Settings(NamedTuple):
@@ -25,14 +25,15 @@ class Settings(NamedTuple):
     temporal : weight of the last frame, at the frames' own rate
     beyond : how far the amplitude of each mask may exceed one, see `layer_amplitude`
     lean : pull of the weights towards the layers that move what is under each mask
-    lips_yield : the part of the data term that ``1 - g`` stands before: `face`, all of it, as
-        published; `mouth`, what lies under the lips' mask, so that closed lips do not hold the
-        rest of the face still
+    lip_bias : what closeness g of the lips does. `published`: as above. `mouth`: ``1 - g`` stands
+        only before what lies under the lips' mask, so that closed lips do not hold the rest of the
+        face still. `gap`: nothing gives way and nothing is drawn to /m/, but the character's gap
+        is one more row of data, see `layer_gap`
     """
 
     temporal: float = 0.05
     beyond: float = 0.0
-    lips_yield: str = "face"
+    lip_bias: str = "published"
     lean: float = 0.0
 
 
@@ -125,8 +126,8 @@ def check(model: layer_model.Model, settings: Settings, frames, closeness) -> No
         raise ValueError(f"expected at least one frame, got {np.shape(frames)}")
     if not (0.0 <= settings.temporal < np.inf and 0.0 <= settings.beyond < np.inf):
         raise ValueError(f"temporal and beyond must be at least 0 and finite, got {settings}")
-    if settings.lips_yield not in LIPS_YIELD:
-        raise ValueError(f"lips_yield must be one of {LIPS_YIELD}, got {settings.lips_yield}")
+    if settings.lip_bias not in LIP_BIASES:
+        raise ValueError(f"lip_bias must be one of {LIP_BIASES}, got {settings.lip_bias}")
     near = np.asarray(closeness)
     if not ((near >= 0.0) & (near <= 1.0)).all():
         raise ValueError(f"closeness must be in 0..1, got {near.min()} to {near.max()}")
@@ -144,7 +145,10 @@ def stated(
 ) -> layer_objective.Objective:
     """Return a frame's objective, given its data term and the last frame's point, if any."""
     yielding = quadratic
-    if closeness > 0.0 and settings.lips_yield == "mouth":
+    if closeness > 0.0 and settings.lip_bias == "gap":
+        yielding = quadratic = layer_gap.closing(model, quadratic, closeness)
+        closeness = 0.0
+    elif closeness > 0.0 and settings.lip_bias == "mouth":
         yielding = layer_model.under_lips(model, frame)
     found = layer_objective.at(model, quadratic, yielding, closeness, settings.temporal, before)
     return layer_objective.leaning(model, found, settings.lean) if settings.lean else found

@@ -23,4 +23,4 @@ def closeness(gap: np.ndarray, closed: float, sigma: float) -> np.ndarray:
     if not (0 < sigma < np.inf and np.isfinite(closed)):
         raise ValueError(f"sigma {sigma} must be above 0 and closed {closed} finite")
     apart = np.maximum(np.asarray(gap, float) - closed, 0.0)
-    return np.nan_to_num(np.exp(-(apart**2) / (2 * sigma**2)))
+    return np.nan_to_num(np.exp(-((apart / sigma) ** 2) / 2))

@@ -124,3 +124,20 @@ def _check(
         ]
         message = f"the masks of {actor} sum to {sums[worst]:g} at {points[worst]}"
         raise errors.InputError(path, f"{message} ({', '.join(shares)}): make it 1")
+
+
+def check_names(path: str | Path, actor: str, masks: Sequence[str], own: Sequence[str]) -> None:
+    """Refuse masks that the character does not have, or lacks.
+
+    Raises
+    ------
+    errors.InputError
+        naming the first
+    """
+    for name in [*masks, *own]:
+        if name not in own:
+            message = f"the character has no mask '{name}', its masks are {', '.join(own)}"
+            raise errors.InputError(path, f"{message}: use the same names")
+        if name not in masks:
+            message = f"lacks the character's mask '{name}' for actor {actor}"
+            raise errors.InputError(path, f"{message}: give it points")

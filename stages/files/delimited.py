@@ -31,7 +31,7 @@ def read(
     ------
     errors.InputError
         if the file is missing, no UTF-8 text, lacks a column, has an unknown or a doubled one,
-        or a row has another number of cells
+        a quotation mark is not closed, or a row has another number of cells
     """
     try:
         text = Path(path).read_text(encoding="utf-8-sig")
@@ -42,7 +42,7 @@ def read(
     except UnicodeDecodeError as error:
         message = f"is no UTF-8 text at byte {error.start}: save it as UTF-8"
         raise errors.InputError(path, message) from error
-    lines = list(csv.reader(text.splitlines(), delimiter=separator))
+    lines = _lines(path, text, separator)
     if not lines:
         raise errors.InputError(path, f"is empty: its header is {', '.join(required)}")
     header = [name.strip() for name in lines[0]]
@@ -56,6 +56,22 @@ def read(
             raise errors.InputError(path, message + ": add or remove separators")
         rows.append(Row(number, dict(zip(header, (cell.strip() for cell in line), strict=True))))
     return rows
+
+
+def _lines(path: str | Path, text: str, separator: str) -> list[list[str]]:
+    """Return the cells of every line."""
+    reader = csv.reader(text.splitlines(), delimiter=separator)
+    lines = []
+    try:
+        for cells in reader:
+            lines.append(cells)
+            if reader.line_num > len(lines):
+                message = f"line {len(lines)}: a quotation mark is not closed on its line"
+                raise errors.InputError(path, message + ": close or remove it")
+    except csv.Error as error:
+        message = f"line {len(lines) + 1}: {error}: remove quotation marks, or split the cell"
+        raise errors.InputError(path, message) from error
+    return lines
 
 
 def _check_header(

@@ -20,6 +20,8 @@ from stages.files import delimited, errors, extremes
 REQUIRED = ("character", "layer", "gain")
 OPTIONAL = ("shot", "name", "start_s", "end_s", "fade_s")
 FADE_S = 0.2
+# beyond this a gain is a slip of the keyboard, and rows that meet could leave single precision
+MOST_GAIN = 100.0
 
 
 @dataclasses.dataclass(frozen=True)
@@ -92,16 +94,16 @@ def _row(path: str | Path, row: delimited.Row, known: Sequence[extremes.Extreme]
     cells = dict.fromkeys(OPTIONAL, "") | row.cells
     row = delimited.Row(row.line, cells)
     gain = delimited.number(path, row, "gain")
-    if gain < 0:
-        message = f"line {row.line}, column gain: '{cells['gain']}' is negative: give 0 or more"
-        raise errors.InputError(path, message)
+    if not 0 <= gain <= MOST_GAIN:
+        message = f"line {row.line}, column gain: '{cells['gain']}' is not within 0 and"
+        raise errors.InputError(path, f"{message} {MOST_GAIN:g}: correct it")
     start = delimited.number(path, row, "start_s") if cells["start_s"] else -math.inf
     end = delimited.number(path, row, "end_s") if cells["end_s"] else math.inf
     fade = delimited.number(path, row, "fade_s") if cells["fade_s"] else FADE_S
     try:
         directing.presence(np.zeros(0), start, end, fade)
     except ValueError as error:
-        message = f"line {row.line}: {error}: move start_s, end_s or shorten fade_s"
+        message = f"line {row.line}: {error}: correct start_s, end_s or fade_s"
         raise errors.InputError(path, message) from error
     scope = cells["character"], cells["shot"], cells["layer"], cells["name"]
     return Row(row.line, scope, _extremes(path, row, known), gain, start, end, fade)

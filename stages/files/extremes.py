@@ -56,6 +56,12 @@ def read(path: str | Path) -> list[Extreme]:
     return list(found.values())
 
 
+def rests(layers: Sequence[str], listed: Sequence[tuple[str, str]]) -> list[int]:
+    """Return where the neutral of each layer stands in a list of (layer, name), -1 for nowhere."""
+    wanted = [(layer, AT_REST[layer]) for layer in layers]
+    return [listed.index(extreme) if extreme in listed else -1 for extreme in wanted]
+
+
 def nearest(known: Sequence[Extreme], layer: str, name: str) -> str:
     """Return the extreme of a layer whose name is most like another, for an error."""
     names = [each.name for each in known if each.layer == layer]

@@ -24,6 +24,9 @@ def take(folder: Path) -> dict:
     if not seen.any():
         return {"residual": "-", "outside": "-", "certified": "-", "shares": "no frame is solved"}
     most = found.weights[seen].max(axis=1)
+    gaps = found.measures["gap"][seen]
+    # the published solver proves nothing
+    certified = f"{(gaps < CERTIFIED).mean():.0%}" if np.isfinite(gaps).any() else "-"
     shares = [
         f"{name} {share:.0%}"
         for name, share in zip(found.layers, (most > DEAD).mean(axis=0), strict=True)
@@ -31,7 +34,7 @@ def take(folder: Path) -> dict:
     return {
         "residual": f"{np.median(found.measures['residual'][seen]):.4f}",
         "outside": f"{np.median(found.measures['outside'][seen]):.2f}",
-        "certified": f"{(found.measures['gap'][seen] < CERTIFIED).mean():.0%}",
+        "certified": certified,
         "shares": ", ".join(shares),
     }
 

@@ -151,6 +151,13 @@ def without(layout: Layout, left_out: Sequence[int]) -> list[Group]:
     return [group for group in kept if group.names]
 
 
+def coordinates_of(layout: Layout, part: Layout) -> np.ndarray:
+    """Return which coordinates (D,) of a layout are those of a part of it."""
+    own = {(group.kind, name) for group in part for name in group.names}
+    kept = [(group.kind, name) in own for group in layout for name in group.names]
+    return np.array(kept, bool)[point_of(layout)]
+
+
 def check_within(path: str | Path, points: LayerPoints, layout: Layout) -> list[str]:
     """Return the points of a layout that a shot lacks, and refuse one that lacks most.
 

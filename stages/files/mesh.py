@@ -40,8 +40,8 @@ def read(path: str | Path) -> Mesh:
     Raises
     ------
     errors.InputError
-        if the file is missing, of another format, has no vertices, a coordinate that is no finite
-        number, or a polygon that names a vertex that does not exist
+        if the file is missing, of another format, has no vertices, a coordinate or colour that is
+        no finite number, or a polygon that names a vertex that does not exist
     """
     path = Path(path)
     if path.suffix.lower() not in READERS:
@@ -74,6 +74,10 @@ def _check(path: Path, mesh: Mesh) -> None:
     if len(bad):
         found = " ".join(f"{value:g}" for value in mesh.vertices[bad[0]])
         message = f"vertex {bad[0]} is '{found}', not finite: repair it and export again"
+        raise errors.InputError(path, message)
+    bad = np.flatnonzero(~np.isfinite(mesh.colours).all(axis=1))
+    if len(bad):
+        message = f"the colour of vertex {bad[0]} is not finite: paint it and export again"
         raise errors.InputError(path, message)
     outside = np.flatnonzero((mesh.corners < 0) | (mesh.corners >= count))
     if len(outside):

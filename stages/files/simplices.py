@@ -1,8 +1,9 @@
 """`simplices.npz`: the extremes that an actor and a character share, ready to be solved for.
 
-Arrays: `basis` (D, K), `scale` (D,), `masks` (R, D), `layer` (K,). The header: `layers` (J),
+Arrays: `basis` (D, K), `scale` (D,), `masks` (R, D), `layer` (K,), `gaps` (K,), `gap_weights`
+(D,). The header: `layers` (J),
 `extremes` (K pairs of layer and name), `masks` (R names), `points` (groups of kind and names),
-`driven_by` (`video`, `markers` or `both`), `lip_points`, `lip_mask`, `closed_gap`.
+`driven_by` (`video`, `markers` or `both`), `lip_points`, `lip_mask`, `closed_gap`, `gap_start`.
 Beside it lies a table of what became of each extreme and point, `layer, name, state, detail`.
 """
 
@@ -15,7 +16,7 @@ import numpy as np
 from stages.files import delimited, errors, extremes, layer_points, model
 
 KIND = "simplices"
-ARRAYS = ("basis", "scale", "masks", "layer")
+ARRAYS = ("basis", "scale", "layer", "gaps", "gap_weights")
 USED, LEFT_OUT = "used", "left out"
 REPORT = ("layer", "name", "state", "detail")
 
@@ -38,6 +39,11 @@ class Simplices:
     lip_points : `upper,lower`, whose distance shows lip closures; or an empty text
     lip_mask : the mask of the lips; an empty text where there is no lip bias
     closed_gap : that distance [face units] where the lips are closed; NaN without a lip bias
+    gaps : (K,) float array [face units], how far the lips of each extreme are open, on the
+        character if it shows where its lips meet; zero without a lip bias
+    gap_weights : (D,) float array [face units by balanced offsets], what tells the distance of the
+        lips less `closed_gap`; zero where nothing does
+    gap_start : that distance [face units] at the neutral
     """
 
     layers: list[str]
@@ -52,11 +58,14 @@ class Simplices:
     lip_points: str
     lip_mask: str
     closed_gap: float
+    gaps: np.ndarray
+    gap_weights: np.ndarray
+    gap_start: float
 
 
 def write(path: str | Path, made: Simplices, meta: dict, sources: Iterable[str | Path]) -> None:
     """Write simplices, and what else the file says of itself."""
-    arrays = {name: getattr(made, name) for name in ("basis", "scale", "layer")}
+    arrays = {name: getattr(made, name) for name in ARRAYS}
     header = {
         "layers": made.layers,
         "extremes": [list(extreme) for extreme in made.extremes],
@@ -66,6 +75,7 @@ def write(path: str | Path, made: Simplices, meta: dict, sources: Iterable[str |
         "lip_points": made.lip_points,
         "lip_mask": made.lip_mask,
         "closed_gap": None if np.isnan(made.closed_gap) else made.closed_gap,
+        "gap_start": made.gap_start,
         "units": "face units",
     }
     model.write(path, KIND, arrays | {"masks": made.mask_weights}, header | meta, sources)
@@ -80,6 +90,9 @@ def read(path: str | Path) -> Simplices:
         if the file is of another kind
     """
     arrays, header = model.read(path, KIND)
+    for name in ARRAYS:
+        if name not in arrays:
+            raise errors.InputError(path, f"holds no {name}: delete it and run again")
     closed_gap = header["closed_gap"]
     return Simplices(
         header["layers"],
@@ -94,6 +107,9 @@ def read(path: str | Path) -> Simplices:
         header["lip_points"],
         header["lip_mask"],
         np.nan if closed_gap is None else closed_gap,
+        arrays["gaps"],
+        arrays["gap_weights"],
+        header["gap_start"],
     )
 
 

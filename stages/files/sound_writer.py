@@ -20,7 +20,8 @@ def write(path: str | Path, sound: str | Path, tempo: Fraction) -> float:
     Raises
     ------
     errors.InputError
-        if the sound is not there or cannot be decoded, or the file to write is none of these kinds
+        if the sound is not there, empty or cannot be decoded, or the file to write is none of these
+        kinds
     """
     codec = CODECS.get(Path(path).suffix.lower())
     if codec is None:
@@ -43,6 +44,9 @@ def write(path: str | Path, sound: str | Path, tempo: Fraction) -> float:
                 stream.codec_context.flags |= av.codec.context.Flags.bitexact
             container.mux(stream.encode(_frame(rate, layout, start, planes)))
             written = start + planes.shape[1]
+        if stream is None:
+            message = "holds no sound from the film's first picture on"
+            raise errors.InputError(sound, f"{message}: give one that does, or tempo 1")
         container.mux(stream.encode())
     return written / rate
 

@@ -18,7 +18,8 @@ def read(flag: str, text: str) -> Fraction:
         if the text is no tempo
     """
     try:
-        tempo = Fraction(text.strip())
+        # a power of ten can be a number that takes minutes to write out
+        tempo = Fraction(text.strip() if "e" not in text.lower() else 0)
     except (ValueError, ZeroDivisionError):
         tempo = Fraction(0)
     if not SLOWEST <= tempo <= FASTEST or tempo.denominator > FINEST:

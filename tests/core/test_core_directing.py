@@ -13,8 +13,8 @@ def test_weights_are_the_product_of_their_factors():
     frames, masks, layers, layer = 5, 2, 3, np.array([0, 0, 1, 2, 0])
     weights = rng.uniform(size=(frames, masks, layers))
     coefficients, gain = rng.uniform(size=(2, frames, len(layer)))
-    amplitudes = rng.uniform(1, 2, size=(frames, masks))
-    found = directing.composed(weights, coefficients, amplitudes, layer, gain)
+    amplitudes, none = rng.uniform(1, 2, size=(frames, masks)), np.full(layers, -1)
+    found = directing.composed(weights, coefficients, amplitudes, layer, gain, none)
     assert found.shape == (frames, masks, len(layer))
     for t in range(frames):
         for mask in range(masks):
@@ -22,7 +22,23 @@ def test_weights_are_the_product_of_their_factors():
                 wanted = weights[t, mask, j] * coefficients[t, k] * amplitudes[t, mask] * gain[t, k]
                 np.testing.assert_allclose(found[t, mask, k], wanted, rtol=1e-14)
     with pytest.raises(ValueError, match=r"weights \(5, 2, 3\).*do not fit"):
-        directing.composed(weights, coefficients, amplitudes[:, :1], layer, gain)
+        directing.composed(weights, coefficients, amplitudes[:, :1], layer, gain, none)
+
+
+def test_what_gains_take_goes_to_the_layers_neutral():
+    """So the sum under a mask stays one, whatever gains up to one say."""
+    rng = np.random.default_rng(1)
+    layer, rest = np.array([0, 0, 0, 1, 1]), np.array([1, -1])
+    coefficients = np.hstack([rng.dirichlet(np.ones(3), 6), rng.dirichlet(np.ones(2), 6)])
+    weights, gain = rng.dirichlet(np.ones(2), (6, 2)), rng.uniform(size=(6, 5))
+    factors = weights, coefficients, np.ones((6, 2)), layer
+    found = directing.composed(*factors, gain, rest)
+    np.testing.assert_allclose(found[:, :, :3].sum(axis=2), weights[:, :, 0], rtol=1e-12)
+    plain = directing.composed(*factors, gain, np.full(2, -1))
+    np.testing.assert_array_equal(found[:, :, [0, 2, 3, 4]], plain[:, :, [0, 2, 3, 4]])
+    away = directing.composed(*factors, np.zeros((6, 5)), rest)
+    np.testing.assert_allclose(away[:, :, 1], weights[:, :, 0], rtol=1e-12)
+    assert not away[:, :, [0, 2, 3, 4]].any()
 
 
 @given(st.floats(-2, 8), st.floats(0.01, 8), st.floats(0, 0.5), st.floats(0, 3), st.floats(0, 1e-3))
@@ -62,7 +78,15 @@ def test_rows_multiply_and_open_ends_do_not_fade():
     assert (directing.gains(TIMES, 2, [none]) == 1.0).all()
 
 
-@pytest.mark.parametrize("span", [(3, 2, 0), (2, 2, 0), (2, 3, 0.6), (2, 3, -0.1)])
-def test_ranges_without_room_are_refused(span):
-    with pytest.raises(ValueError, match="leaves no room"):
+@pytest.mark.parametrize(
+    ("span", "message"),
+    [
+        ((3, 2, 0), "2 s, is not after the start, 3 s"),
+        ((2, 2, 0), "is not after the start"),
+        ((2, 3, 0.6), "leaves no room"),
+        ((2, 3, -0.1), "a fade of -0.1 s is negative"),
+    ],
+)
+def test_ranges_without_room_are_refused(span, message):
+    with pytest.raises(ValueError, match=message):
         directing.presence(TIMES, *span)

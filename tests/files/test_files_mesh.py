@@ -93,6 +93,7 @@ def test_a_ply_with_quads_in_big_endian_is_read(tmp_path):
     [
         ("a.obj", "v 0 0 0\nv 0 nan 0\n", "vertex 1 is '0 nan 0', not finite"),
         ("a.obj", "v 0 0 0\nv 0 inf 0\n", "vertex 1"),
+        ("a.obj", "v 0 0 0 1 nan 0\n", "the colour of vertex 0 is not finite: paint it"),
         ("a.obj", "v 0 0 0\nv 0,5 1 2\n", "line 2: 'v 0,5 1 2' holds no numbers.*decimal"),
         ("a.obj", "v 0 0\n", "line 1: a vertex has 2 numbers"),
         ("a.obj", "", "has no vertices"),

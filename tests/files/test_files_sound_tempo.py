@@ -132,10 +132,15 @@ def test_what_is_no_sound_is_refused(tmp_path):
     (tmp_path / "bad.wav").write_bytes(b"no sound at all")
     with pytest.raises(errors.InputError, match="cannot be decoded"):
         sound_writer.write(tmp_path / "a.wav", tmp_path / "bad.wav", Fraction(2))
+    write_wav(tmp_path / "short.wav", np.zeros(1))
+    with pytest.raises(errors.InputError, match=r"short\.wav: holds no sound from"):
+        sound_writer.write(tmp_path / "a.wav", tmp_path / "short.wav", Fraction(2))
     assert not (tmp_path / "a.wav").exists()
 
 
-@pytest.mark.parametrize("text", ["", "0", "-1", "5", "fast", "1/0", "1.234567", "nan", "inf"])
+@pytest.mark.parametrize(
+    "text", ["", "0", "-1", "5", "fast", "1/0", "1.234567", "nan", "inf", "1e9999999"]
+)
 def test_other_tempos_are_refused(text):
     with pytest.raises(errors.InputError, match=r"--tempo: '.*' is no tempo from 1/4 to 4"):
         tempo_text.read("--tempo", text)

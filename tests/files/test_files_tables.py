@@ -73,6 +73,19 @@ def test_no_utf8_and_no_number_are_named(tmp_path):
         delimited.whole_number(path, row, "frame")
 
 
+@pytest.mark.parametrize(
+    ("text", "pattern"),
+    [
+        ('a\tb\n1\t2\n"3\t4\n5\t6\n', "line 3: a quotation mark is not closed on its line"),
+        ("a\tb\n1\t" + 200_000 * "x" + "\n", "line 2: field larger than field limit"),
+    ],
+    ids=["open quotation", "endless cell"],
+)
+def test_cells_without_an_end_are_named_with_their_line(tmp_path, text, pattern):
+    with pytest.raises(errors.InputError, match=pattern):
+        delimited.read(write(tmp_path / "a.tsv", text), ["a", "b"])
+
+
 CONTOURS = "contour\tkind\tcount\nlips\tclosed\t8\nbrow\topen\t\npupil\tpoint\t1\n"
 LABELS = """frame,point,x_px,y_px,corner
 5,lips_01,2,0,

@@ -103,18 +103,31 @@ class LayeredActor:
             meta |= {"points": POINTS, "neutral": self.neutrals[1].tolist()}
         series.write(path, "expression", frame, frame / float(rate), columns, rate, meta)
 
+    def write_mouth(self, open_poses):
+        """Write a rig of two lips of ten vertices, half a face unit apart in some poses."""
+        neutral = np.column_stack([np.tile(np.linspace(-1, 1, 10), 2), np.zeros((20, 2))])
+        moved = np.repeat([[0, -0.25, 0], [0, 0.25, 0]], 10, axis=0)
+        self._write_rig(
+            EXTREMES, MASKS, neutral, {e: moved * (e in open_poses) for e in EXTREMES}, np.eye(3)[1]
+        )
+
     def write_character(self, extremes, masks=MASKS):
         """Write a rig and its poses, all of random differences from the neutral."""
         rng = np.random.default_rng(5)
         deltas = {extreme: rng.normal(size=(VERTICES, 3)) for extreme in EXTREMES}
         shares = rng.random((len(masks), VERTICES))
+        self._write_rig(extremes, masks, rng.normal(size=(VERTICES, 3)), deltas, shares)
+
+    def _write_rig(self, extremes, masks, neutral, deltas, shares):
+        """Write a rig and its poses, in face units of 6.5 cm."""
+        shares = np.broadcast_to(shares.reshape(len(masks), -1), (len(masks), len(neutral)))
         names = [f"{mask}.{'_'.join(extreme)}" for mask in masks for extreme in extremes]
         made = rig.Rig(
             names=names,
             mask_names=list(masks),
             controls=[],
-            neutral=rng.normal(size=(VERTICES, 3)),
-            deltas=local_shapes.gather([deltas[e] for _ in masks for e in extremes]),
+            neutral=6.5 * neutral,
+            deltas=local_shapes.gather([6.5 * deltas[e] for _ in masks for e in extremes]),
             masks=shares / shares.sum(axis=0),
             mask_index=np.repeat(np.arange(len(masks)), len(extremes)),
             sizes=np.array([3]),
@@ -126,7 +139,7 @@ class LayeredActor:
             face_unit=6.5,
         )
         rig.write(self.folder / "rig.npz", made)
-        rows = [poses.Pose(*extreme, f"{'_'.join(extreme)}.ply", VERTICES) for extreme in extremes]
+        rows = [poses.Pose(*e, f"{'_'.join(e)}.ply", len(neutral)) for e in extremes]
         poses.write(self.folder / "poses.parquet", rows)
 
     def assemble(self, **changed):
@@ -167,6 +180,7 @@ class LayeredActor:
             "temporal": 0,
             "beyond": 0,
             "lean": 0,
+            "lip-bias": "published",
             "layers": self.folder / "layers.parquet",
         }
         stage.main(arguments(options, changed))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from layered_actor import EXTREMES, FIRST, LIPS, MARKERS, MASKS, POINTS
 
-from stages.core import coordinate_balance
+from stages.core import coordinate_balance, lip_seam
 from stages.files import errors, layer_points, layers, simplices
 
 
@@ -28,6 +28,22 @@ def test_extremes_come_back(actor):
     np.testing.assert_array_equal(made.mask_weights.max(axis=0), 1)
     upper, lower = actor.neutrals[1][6:8] + actor.basis[actor.sizes[0] :, 6].reshape(-1, 2)[6:8]
     assert made.closed_gap == pytest.approx(np.linalg.norm(upper - lower), abs=1e-6)
+    # the vertices of this character meet nowhere: the actor's gaps are used
+    lips = actor.basis[actor.sizes[0] :].reshape(-1, 2, len(EXTREMES))[6:8]
+    apart = (actor.neutrals[1][6] - actor.neutrals[1][7])[:, None] + lips[0] - lips[1]
+    wanted = np.maximum(np.linalg.norm(apart, axis=0) - made.closed_gap, 0)
+    np.testing.assert_allclose(made.gaps, wanted, atol=1e-6)
+    assert not made.gap_weights.any()
+
+
+def test_the_gaps_are_the_characters_own_where_its_lips_meet(actor, caplog):
+    actor.write_mouth(open_poses=[("emotion", "joy"), ("speech", "aa")])
+    with caplog.at_level(logging.INFO):
+        made = simplices.read(actor.assemble())
+    opened = np.flatnonzero(made.gaps)
+    assert [EXTREMES[k] for k in opened] == [("emotion", "joy"), ("speech", "aa")]
+    np.testing.assert_allclose(made.gaps[opened], 0.5 - lip_seam.TOUCH / 2)
+    assert "the actor's gaps are used" not in caplog.text
     assert simplices.lip_indices(made) == (1, 1, EXTREMES.index(("speech", "m")))
     assert set(actor.report().values()) == {"used"} and len(actor.report()) == len(EXTREMES)
 

@@ -149,6 +149,17 @@ def test_an_extreme_of_a_family_may_stand_alone_and_rows_multiply(take):
     np.testing.assert_array_equal(found["mouth.speech_m"], plain["mouth.speech_m"])
 
 
+def test_a_neutral_that_is_a_pose_gets_what_gains_take(take):
+    names = ["mouth.emotion_neutral", "mouth.emotion_joy", "mouth.emotion_rage"]
+    take.write_rig(names)
+    plain, found = take.direct(), take.direct("oliver\t\temotion\trage\t0.25\t\t\t")
+    taken = plain["mouth.emotion_rage"] - found["mouth.emotion_rage"]
+    np.testing.assert_allclose(taken, 0.75 * plain["mouth.emotion_rage"], atol=1e-7)
+    given = found["mouth.emotion_neutral"] - plain["mouth.emotion_neutral"]
+    np.testing.assert_allclose(given, taken, atol=1e-7)
+    np.testing.assert_array_equal(found["mouth.emotion_joy"], plain["mouth.emotion_joy"])
+
+
 def smoothed(take, smoothing):
     """Run smooth_weights on what was directed, with a head that is still."""
     frames = np.arange(FRAMES)
@@ -208,10 +219,14 @@ def test_the_motion_filter_keeps_weights_on_their_simplices(take):
         ("oliver\t\temotion\tangr\t0\t\t\t", "line 2, column name: emotion has no 'angr', .*anger"),
         ("oliver\t\tspeech\tanger\t0\t\t\t", "line 2, column name: speech has no 'anger'"),
         ("oliver\t\tmouth\t\t0\t\t\t", "line 2, column layer: 'mouth' is no layer: .*speech"),
-        ("oliver\t\tspeech\t\t-1\t\t\t", "line 2, column gain: '-1' is negative"),
+        ("oliver\t\tspeech\t\t-1\t\t\t", "line 2, column gain: '-1' is not within 0 and 100"),
+        ("oliver\t\tspeech\t\t1e39\t\t\t", "line 2, column gain: '1e39' is not within 0"),
         ("oliver\t\tspeech\t\t\t\t\t", "line 2, column gain: '' is not a number"),
-        ("oliver\t\tspeech\t\t1\t3\t2\t", "line 2: 3 s to 2 s leaves no room"),
-        ("oliver\t\tspeech\t\t1\t2\t2.3\t0.2", "line 2: .* no room for fades of 0.2 s: move"),
+        (
+            "oliver\t\tspeech\t\t1\t3\t2\t",
+            "line 2: the end, 2 s, is not after the start, 3 s: correct",
+        ),
+        ("oliver\t\tspeech\t\t1\t2\t2.3\t0.2", "line 2: .* no room for fades of 0.2 s: correct"),
         ("nobody\t\tspeech\t\t1\tx\t3\t", "line 2, column start_s: 'x' is not a number"),
     ],
 )

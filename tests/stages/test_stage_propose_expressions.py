@@ -190,6 +190,7 @@ def test_bad_input_is_one_line(actress):
         ({"videos": ("-",)}, "--videos: give one for each shot"),
         ({"min_confidence": [0.95]}, "no frame of talk, happy has half of the points and confid"),
         ({"phone_shots": ["other"]}, "--phone-shots: 'other' is none of --shots"),
+        ({"phone_shots": []}, "--phones: give one for each of --phone-shots"),
     ):
         with pytest.raises(errors.InputError, match=message):
             actress.propose(**changed)

@@ -220,7 +220,9 @@ def test_bad_lip_points_are_named(take):
     for pair in ("upper", "upper,lower,tip", "upper,upper"):
         with pytest.raises(errors.InputError, match=f"--lip-points: '{pair}' is no pair"):
             smoothed(take, lip_points=pair, **options)
-    for pair in ("upper,chin", "upper,tip"):
+    with pytest.raises(errors.InputError, match="--lip-points: 'upper' is no pair"):
+        smoothed(take, lip_points="upper,lower;upper", **options)
+    for pair in ("upper,chin", "upper,tip", "upper,lower;upper,chin"):
         with pytest.raises(
             errors.InputError, match=r"expression\.parquet: has no two points upper"
         ):

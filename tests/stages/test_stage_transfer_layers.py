@@ -83,7 +83,7 @@ def test_closing_lips_draw_the_mouth_to_m(actor):
     shown = closed == 1
     assert found.weights[shown, 1, speech].min() > 0.95
     assert found.coefficients[shown, found.extremes.index(("speech", "m"))].min() > 0.95
-    mouth = layers.read(actor.transfer(lip_sigma=0.02, lips_yield="mouth"))
+    mouth = layers.read(actor.transfer(lip_sigma=0.02, lip_bias="mouth"))
     assert mouth.weights[shown, 1, speech].min() > 0.95
     elsewhere = actor.mask != 1
     errors_of = [
@@ -161,6 +161,7 @@ def test_bad_input_is_one_line(actor):
     for changed, message in (
         ({"lip_sigma": -1}, "--lip-sigma: is -1"),
         ({"temporal": "nan"}, "--temporal: is nan"),
+        ({"temporal": "1e300"}, "--temporal: is 1e.300: give 0 to 1e.06"),
         ({"beyond": "inf"}, "--beyond: is inf"),
         ({"lip_sigma": 0.02}, "was made for lip points '' and lip mask '', not 'lips_00,lips_01'"),
         ({"simplices": actor.folder / "rig.npz"}, "kind 'rig', expected 'simplices'"),

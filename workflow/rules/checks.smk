@@ -58,12 +58,22 @@ def check_expression(tables, row):
 
 
 def check_directing(tables, row):
-    """Refuse gains of takes without layers, and times that are none."""
+    """Refuse gains of takes that do not exist or have no layers."""
     shots = cells(tables["shots"], "shot")
     show.check_references("config/directing.tsv", [row], "shot", shots, "shots.tsv")
     if row_of(tables["characters"], "character", row.cells["character"])["method"] != "layers":
         message = f"'{row.cells['character']}' is not driven by layers; only they can be directed"
         refuse("directing", row, "character", message)
+
+
+def check_extremes(tables):
+    """Refuse names that no extreme has, frames with two, and gains and times that mean nothing."""
+    known = extremes.read(data_table("extremes.tsv"))
+    for actor in dict.fromkeys(cells(tables["expressions"], "actor")):
+        shots = [row["shot"] for row in rows_of(tables["expressions"], "actor", actor)]
+        expressions.read("config/expressions.tsv", actor, shots, known)
+    if tables["directing"]:
+        directing_table.read("config/directing.tsv", known, "", "")
 
 
 def check_sense(tables, face_regions):
@@ -86,6 +96,7 @@ def check_sense(tables, face_regions):
         check_expression(tables, row)
     for row in tables["directing"]:
         check_directing(tables, row)
+    check_extremes(tables)
 
 
 def check_cut(row):
@@ -162,9 +173,13 @@ def check_character(row):
         if not row.cells["delivery_shapes"]:
             message = "method layers has channels of its delivery_shapes alone; clear the cell"
             refuse("characters", row, "channels", message)
-    for column in ("tempo", "damping"):
-        if float(row.cells[column]) == 0:
-            refuse("characters", row, column, "must be above 0; write 1 for no change")
+    if float(row.cells["damping"]) == 0:
+        refuse("characters", row, "damping", "must be above 0; write 1 for critical damping")
+    if float(row.cells["face_unit"]) == 0:
+        refuse("characters", row, "face_unit", "must be above 0; measure between the eyes")
+    tempo_text.read(f"config/characters.tsv: line {row.line}, column tempo", row.cells["tempo"])
+    if row.cells["delivery_shapes"] and row.cells["neutral"].endswith(".csv"):
+        refuse("characters", row, "delivery_shapes", "controls have no blendshapes; clear the cell")
     if row.cells["outputs"] and row.cells["neutral"].endswith(".csv"):
         refuse("characters", row, "outputs", "a table of controls has no mesh; clear the cell")
     if own_shapes and not row.cells["masks"]:

@@ -9,7 +9,16 @@ import jsonschema
 import yaml
 
 from stages.core import regression_choice
-from stages.files import errors, regions, show, source_code
+from stages.files import (
+    directing_table,
+    errors,
+    expressions,
+    extremes,
+    regions,
+    show,
+    source_code,
+    tempo_text,
+)
 
 # the stages run with the Python that runs Snakemake, wherever that was started
 shell.prefix(f"export PATH={shlex.quote(str(Path(sys.executable).parent))}:$PATH; ")

@@ -82,14 +82,14 @@ def directing_rows(wildcards):
     return rows_as_text("directing", character=character, shot=shots)
 
 
-def directing_table(wildcards):
+def directing_path(wildcards):
     """Return the path of the table of gains, or a blank for takes that it does not mention."""
     return "config/directing.tsv" if directing_rows(wildcards) else ""
 
 
 def directing_source(wildcards):
     """Return the table of gains for the takes that it mentions."""
-    return present([directing_table(wildcards)])
+    return present([directing_path(wildcards)])
 
 
 def lip_points_of_actor(wildcards):

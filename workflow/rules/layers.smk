@@ -124,7 +124,7 @@ rule transfer_layers:
         lip_points=session_cell("lip_points"),
         lip_mask=character_cell("lip_mask"),
         lip_sigma=character_cell("lip_sigma"),
-        lips_yield=character_cell("lips_yield"),
+        lip_bias=character_cell("lip_bias"),
         temporal=character_cell("temporal"),
         beyond=character_cell("beyond"),
         lean=character_cell("lean"),
@@ -135,7 +135,7 @@ rule transfer_layers:
         " --lip-points={params.lip_points:q}"
         " --lip-mask {params.lip_mask:q}"
         " --lip-sigma {params.lip_sigma}"
-        " --lips-yield {params.lips_yield:q}"
+        " --lip-bias {params.lip_bias:q}"
         " --temporal {params.temporal}"
         " --beyond {params.beyond}"
         " --lean {params.lean}"
@@ -163,7 +163,7 @@ rule transfer_layers_published:
         lip_points=session_cell("lip_points"),
         lip_mask=character_cell("lip_mask"),
         lip_sigma=character_cell("lip_sigma"),
-        lips_yield=character_cell("lips_yield"),
+        lip_bias=character_cell("lip_bias"),
         temporal=character_cell("temporal"),
         beyond=character_cell("beyond"),
         lean=character_cell("lean"),
@@ -175,7 +175,7 @@ rule transfer_layers_published:
         " --lip-points={params.lip_points:q}"
         " --lip-mask {params.lip_mask:q}"
         " --lip-sigma {params.lip_sigma}"
-        " --lips-yield {params.lips_yield:q}"
+        " --lip-bias {params.lip_bias:q}"
         " --temporal {params.temporal}"
         " --beyond {params.beyond}"
         " --lean {params.lean}"
@@ -204,7 +204,7 @@ rule direct_layers:
     params:
         code=code_of("direct_layers"),
         rows=directing_rows,
-        directing=directing_table,
+        directing=directing_path,
     shell:
         "python -m stages.direct_layers"
         " --layers {input.layers:q}"

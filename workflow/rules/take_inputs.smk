@@ -134,5 +134,5 @@ def take_sound_source(wildcards):
 
 def retimed_sound(shot, character):
     """Return the sound of a take at another tempo than the actor's, where it has one."""
-    asked = float(character_row(character)["tempo"]) != 1 and sound_path(shot)
+    asked = tempo_text.read("tempo", character_row(character)["tempo"]) != 1 and sound_path(shot)
     return [f"results/takes/{shot}/{character}/sound.flac"] if asked else []
