@@ -11,7 +11,7 @@ How = layer_vignette.How
 EXAGGERATED = 1.1
 BEYOND = (0.0, 0.15, 0.3, 0.5, 0.7, 1.0)
 SOFT = {
-    "as by default": How(),
+    "as by default": How(lip_bias="gap", lips="told"),
     "no bias": How(0.0),
     "markers, no bias": How(0.0, points="markers"),
     "markers, nothing held": How(0.0, 0.0, points="markers", lean=0.0),
