@@ -59,6 +59,8 @@ def table(take: layer_vignette.Take) -> list[str]:
         "; markers": How(0.0, points="markers"),
         "; no lean": How(0.0, lean=0.0),
         "; neither lean nor held": How(0.0, 0.0, lean=0.0),
+        "; beyond 0.7": How(0.0, beyond=0.7),
+        "; beyond 0.7, no lean": How(0.0, beyond=0.7, lean=0.0),
     }
     body = layer_vignette.body(take, "clay_layers")
     shown = {

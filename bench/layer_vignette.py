@@ -36,13 +36,13 @@ class How(NamedTuple):
     balance: str = "mask_variance"
     points: str = "both"
     lip_bias: str = "mouth"
-    lean: float = 0.03
+    lean: float = 0.01
     lips: str = "film"
     character: str = CHARACTERS[0]
 
 
 class Solved(NamedTuple):
-    """Hold weights (T, R, J), coefficients (T, K), amplitudes (T, J), u (T, R, K), gamma (T,)."""
+    """Hold weights (T, R, J), coefficients (T, K), amplitudes (T, R), u (T, R, K), gamma (T,)."""
 
     weights: np.ndarray
     coefficients: np.ndarray

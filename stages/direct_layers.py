@@ -1,8 +1,8 @@
 """Put the layers of a take together for its character, each turned up or down as directed.
 
-Writes the weight of every column of the rig, ``u_lk = w a amplitude gain``; what gains below one
-take goes to the layer's neutral, if that is a pose of its own. An extreme that the actor lacks has
-weight 0. Frames that were not observed stay NaN.
+Writes the weight of every column of the rig, ``u_lk = w_lj a_k amplitude_l gain``; what gains below
+one take goes to the layer's neutral, if that is a pose of its own. An extreme that the actor lacks
+has weight 0. Frames that were not observed stay NaN.
 """
 
 import argparse

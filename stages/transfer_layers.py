@@ -1,9 +1,10 @@
 """Find how much of each extreme of emotion, speech and blink a take shows (K11 section 4).
 
-The coefficients of a layer and the weights of a mask sum to one. While the actor's lips are closed
-the gap of the character's is one more row of data; or, as published, its lips' mask is drawn to
-speech and speech to its m. Where the lips' distance was not observed, or `lip_sigma` is 0, it says
-nothing. Save as published, all points about the lips tell it, not the two alone. Each frame is
+The coefficients of a layer and the weights of a mask sum to one; with `beyond` above 0 each mask
+has an amplitude too, so that a smile stays in a mouth that speaks. While the actor's lips are
+closed the gap of the character's is one more row of data; or, as published, its lips' mask is drawn
+to speech and speech to its m. Where the lips' distance was not observed, or `lip_sigma` is 0, it
+says nothing. Save as published, all points about the lips tell it, not the two alone. Each frame is
 drawn to the one before by `temporal`, which is brought to the take's rate. Frames with less than
 half of the coordinates have no layers, and confidence 0; frames after them start from the last that
 has.
@@ -46,7 +47,7 @@ def build_parser() -> argparse.ArgumentParser:
         ("temporal", "how strongly a frame clings to the one before, at 30 frames/s"),
         (
             "beyond",
-            "how far layers may go beyond their extremes, 0.2 up to 1.2 times; 0 not at all",
+            "how far a mask's layers may together exceed one, 0.5 up to 1.5 times; 0 not at all",
         ),
         ("lean", "how strongly a mask is left to the layers that move what is under it; 0 not"),
     ):

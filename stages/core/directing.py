@@ -1,6 +1,6 @@
 """Layers turned up and down over time, and put together into what moves a rig (K11 eq. 5).
 
-    u_lk(t) = w_l,layer(k)(t) a_k(t) amplitude_layer(k)(t) g_k(t)
+    u_lk(t) = w_l,layer(k)(t) a_k(t) amplitude_l(t) g_k(t)
 
 What a gain below one takes from an extreme goes to the layer's neutral: where that is the
 character's own, it moves nothing and is left out. The mask weights stay, so no other layer fills
@@ -99,7 +99,7 @@ def composed(
     ----------
     weights : (T, R, J) float array, of the layers in each mask
     coefficients : (T, K) float array, of the extremes
-    amplitudes : (T, J) float array, of the layers
+    amplitudes : (T, R) float array, of the masks
     layer : (K,) int array, the layer of each extreme
     gain : (T, K) float array
     rest : (J,) int array, the neutral of each layer among the extremes; -1 where it is none of them
@@ -113,7 +113,7 @@ def composed(
     ValueError
         if the forms do not fit together
     """
-    if weights.shape[::2] != amplitudes.shape or not (
+    if weights.shape[:2] != amplitudes.shape or not (
         coefficients.shape == gain.shape == (len(weights), len(layer))
     ):
         raise ValueError(
@@ -124,4 +124,4 @@ def composed(
     for number, extreme in enumerate(rest):
         if extreme >= 0:
             shown[:, extreme] += taken[:, layer == number].sum(axis=1)
-    return weights[:, :, layer] * (shown * amplitudes[:, layer])[:, None, :]
+    return (weights * amplitudes[:, :, None])[:, :, layer] * shown[:, None, :]

@@ -6,20 +6,20 @@ import numpy as np
 def displacements(
     layer: np.ndarray, weights: np.ndarray, coefficients: np.ndarray, amplitudes: np.ndarray
 ) -> np.ndarray:
-    """Return how much of each extreme each mask shows, ``u_lk = w[l, j(k)] s_j(k) a_k``.
+    """Return how much of each extreme each mask shows, ``u_lk = s_l w[l, j(k)] a_k``.
 
     Parameters
     ----------
     layer : (K,) int array, the layer of each extreme
     weights : (T, R, J) float array
     coefficients : (T, K) float array
-    amplitudes : (T, J) float array
+    amplitudes : (T, R) float array
 
     Returns
     -------
     (T, R, K) float array
     """
-    return weights[:, :, layer] * (coefficients * amplitudes[:, layer])[:, None]
+    return (weights * amplitudes[:, :, None])[:, :, layer] * coefficients[:, None]
 
 
 def composed(basis: np.ndarray, masks: np.ndarray, u: np.ndarray) -> np.ndarray:

@@ -94,7 +94,7 @@ def solve(
     if settings.beyond > 0.0:
         raise ValueError(f"beyond must be 0 for the published solver, got {settings.beyond}")
     point, before = layer_starts.draws(model, 1, seed)[1], None
-    solutions, ones = [], np.ones(model.sizes[1])
+    solutions, ones = [], np.ones(model.sizes[0])
     for frame, near in zip(frames, closeness, strict=True):
         quadratic = layer_model.project(model, frame)
         if quadratic is None:

@@ -48,9 +48,15 @@ class Found(NamedTuple):
 
 
 def descend(
-    model: layer_model.Model, objective: layer_objective.Objective, start: np.ndarray
+    model: layer_model.Model,
+    objective: layer_objective.Objective,
+    start: np.ndarray,
+    sums: np.ndarray | float = 1.0,
 ) -> tuple[float, np.ndarray]:
-    """Return the objective and the point to which feasible SQP comes from a start."""
+    """Return the objective and the point to which feasible SQP comes from a start.
+
+    The start has the sums (by group) that the point is to keep.
+    """
     point = start.copy()
     value = layer_kernel.descend(
         objective.quadratic.gram,
@@ -65,7 +71,7 @@ def descend(
         TOLERANCE * model.scale,
         layer_model.RIDGE * model.scale,
     )
-    point /= np.bincount(model.group, point)[model.group]
+    point /= (np.bincount(model.group, point) / sums)[model.group]
     return value + objective.quadratic.energy + objective.fixed, point
 
 

@@ -23,7 +23,7 @@ class Settings(NamedTuple):
     Attributes
     ----------
     temporal : weight of the last frame, at the frames' own rate
-    beyond : how far amplitudes may exceed one
+    beyond : how far the amplitude of each mask may exceed one, see `layer_amplitude`
     lean : pull of the weights towards the layers that move what is under each mask
     lip_bias : what closeness g of the lips does. `published`: as above. `mouth`: ``1 - g`` stands
         only before what lies under the lips' mask, so that closed lips do not hold the rest of the
@@ -44,7 +44,7 @@ class State(NamedTuple):
     ----------
     weights : (R, J) float array
     coefficients : (K,) float array
-    amplitudes : (J,) float array
+    amplitudes : (R,) float array
     guide : where the next frame's convex problems start; None = anywhere
     """
 
@@ -61,10 +61,10 @@ class Solution(NamedTuple):
     ----------
     weights : (R, J) float array
     coefficients : (K,) float array
-    amplitudes : (J,) float array
+    amplitudes : (R,) float array, of the masks, 1 to 1 + beyond
     objective : float, of the best weights and coefficients that were found at amplitude one
     bound : float, no weights and coefficients whatever have a lower one
-    data : float, ``|x - sum_l M_l sum_j w_lj s_j B_j a_j|^2``, amplitudes included
+    data : float, ``|x - sum_l M_l s_l sum_j w_lj B_j a_j|^2``, amplitudes included
     outside : float, root of what the data term, at amplitude one, has above that of the best
         linear combination under each mask
     """
@@ -102,15 +102,17 @@ def _amplified(
     point: np.ndarray,
     previous: State | None,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the solver's point and the amplitude of each layer, one where bounds are hard."""
-    ones = np.ones(model.sizes[1])
+    """Return the solver's point and the amplitude of each mask, one where bounds are hard."""
     if settings.beyond == 0.0:
-        return point, ones
-    slack = SOFTNESS * model.scale
-    held = 0.0 if previous is None else settings.temporal
-    before = ones if previous is None else previous.amplitudes
-    centre = (slack + held * before) / (slack + held)
-    return layer_amplitude.follow(model, objective, point, slack + held, centre, settings.beyond)
+        return point, np.ones(len(model.masks))
+    if previous is not None and settings.temporal > 0.0:
+        # what is held of the last frame is what it showed, amplitudes included
+        more = settings.temporal * previous.weights * (previous.amplitudes - 1.0)[:, None]
+        target = objective.target.copy()
+        target[: more.size] += more.ravel() / objective.pull[: more.size]
+        objective = objective._replace(target=target)
+    ridge = SOFTNESS * model.scale
+    return layer_amplitude.follow(model, objective, point, ridge, settings.beyond)
 
 
 def check(model: layer_model.Model, settings: Settings, frames, closeness) -> None:
@@ -163,10 +165,11 @@ def describe(
 ) -> Solution:
     """Return a frame's solution, given the solver's point."""
     regions, layers, _ = model.sizes
-    size = np.tile(amplitudes[model.layer], regions)
-    data = layer_model.data(quadratic, point[model.first] * point[model.second] * size)
+    weights = point[: regions * layers].reshape(regions, layers)
+    u = (weights * amplitudes[:, None]).ravel()[model.first] * point[model.second]
+    data = layer_model.data(quadratic, u)
     return Solution(
-        point[: regions * layers].reshape(regions, layers),
+        weights,
         point[regions * layers :],
         amplitudes,
         objective,
@@ -179,7 +182,7 @@ def describe(
 def nothing(model: layer_model.Model) -> Solution:
     """Return the solution of a frame of which too little was observed."""
     regions, layers, count = model.sizes
-    parts = np.full((regions, layers), np.nan), np.full(count, np.nan), np.full(layers, np.nan)
+    parts = np.full((regions, layers), np.nan), np.full(count, np.nan), np.full(regions, np.nan)
     return Solution(*parts, *(np.nan,) * 4)
 
 

@@ -23,7 +23,7 @@ def closeness(gap: np.ndarray, closed: float, sigma: float) -> np.ndarray:
         if sigma is not above 0, or `closed` is not finite
     """
     apart = _apart(gap, closed, sigma)
-    return np.nan_to_num(np.exp(-(apart**2) / (2 * sigma**2)))
+    return np.nan_to_num(np.exp(-((apart / sigma) ** 2) / 2))
 
 
 def steep(gap: np.ndarray, closed: float, sigma: float) -> np.ndarray:
@@ -42,7 +42,8 @@ def steep(gap: np.ndarray, closed: float, sigma: float) -> np.ndarray:
     ValueError
         if sigma is not above 0, or `closed` is not finite
     """
-    return np.nan_to_num(1.0 / (1.0 + (_apart(gap, closed, sigma) / sigma) ** STEEPNESS))
+    with np.errstate(over="ignore"):
+        return np.nan_to_num(1.0 / (1.0 + (_apart(gap, closed, sigma) / sigma) ** STEEPNESS))
 
 
 def _apart(gap: np.ndarray, closed: float, sigma: float) -> np.ndarray:

@@ -2,9 +2,9 @@
 
 Columns: `weight.<mask>.<layer>`, how much a layer has to say in a mask, one in sum over the layers;
 `coefficient.<layer>.<name>`, how much of each extreme, one in sum over a layer;
-`amplitude.<layer>`, how far beyond the extremes the layer goes, 1 within; and the measures of
-`MEASURES` with `confidence`. NaN where too little was observed. Layers and extremes that actor and
-character do not share have no columns.
+`amplitude.<mask>`, what all layers in a mask are multiplied by, 1 unless they may go beyond one in
+sum; and the measures of `MEASURES` with `confidence`. NaN where too little was observed. Layers and
+extremes that actor and character do not share have no columns.
 """
 
 import dataclasses
@@ -40,7 +40,7 @@ class Layers:
     extremes : layer and name of each of the K extremes
     weights : (T, R, J) float array
     coefficients : (T, K) float array
-    amplitudes : (T, J) float array
+    amplitudes : (T, R) float array
     measures : name -> (T,) float array, those of `MEASURES`
     confidence : (T,) float array, 0..1
     """
@@ -64,7 +64,7 @@ def write(path: str | Path, layers: Layers, meta: dict, sources: Iterable[str | 
     columns = dict(zip(names, layers.weights.reshape(len(layers.frame), -1).T, strict=True))
     names = _coefficient_columns(layers.extremes)
     columns |= dict(zip(names, layers.coefficients.T, strict=True))
-    columns |= dict(zip(_amplitude_columns(layers.layers), layers.amplitudes.T, strict=True))
+    columns |= dict(zip(_amplitude_columns(layers.masks), layers.amplitudes.T, strict=True))
     columns |= {name: layers.measures[name] for name in MEASURES}
     columns["confidence"] = layers.confidence
     header = {
@@ -99,7 +99,7 @@ def read(path: str | Path) -> Layers:
         extremes,
         weights.reshape(len(found.frame), len(masks), len(layers)),
         _stack(found, path, _coefficient_columns(extremes)),
-        _stack(found, path, _amplitude_columns(layers)),
+        _stack(found, path, _amplitude_columns(masks)),
         {name: _stack(found, path, [name])[:, 0] for name in MEASURES},
         _stack(found, path, ["confidence"])[:, 0],
     )
@@ -115,9 +115,9 @@ def _coefficient_columns(extremes: list[tuple[str, str]]) -> list[str]:
     return [f"coefficient.{layer}.{name}" for layer, name in extremes]
 
 
-def _amplitude_columns(layers: list[str]) -> list[str]:
+def _amplitude_columns(masks: list[str]) -> list[str]:
     """Return the columns of the amplitudes."""
-    return [f"amplitude.{layer}" for layer in layers]
+    return [f"amplitude.{mask}" for mask in masks]
 
 
 def _stack(found: series.Series, path: str | Path, names: list[str]) -> np.ndarray:

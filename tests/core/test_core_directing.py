@@ -13,17 +13,16 @@ def test_weights_are_the_product_of_their_factors():
     frames, masks, layers, layer = 5, 2, 3, np.array([0, 0, 1, 2, 0])
     weights = rng.uniform(size=(frames, masks, layers))
     coefficients, gain = rng.uniform(size=(2, frames, len(layer)))
-    amplitudes = rng.uniform(1, 2, size=(frames, layers))
-    none = np.full(layers, -1)
+    amplitudes, none = rng.uniform(1, 2, size=(frames, masks)), np.full(layers, -1)
     found = directing.composed(weights, coefficients, amplitudes, layer, gain, none)
     assert found.shape == (frames, masks, len(layer))
     for t in range(frames):
         for mask in range(masks):
             for k, j in enumerate(layer):
-                wanted = weights[t, mask, j] * coefficients[t, k] * amplitudes[t, j] * gain[t, k]
+                wanted = weights[t, mask, j] * coefficients[t, k] * amplitudes[t, mask] * gain[t, k]
                 np.testing.assert_allclose(found[t, mask, k], wanted, rtol=1e-14)
     with pytest.raises(ValueError, match=r"weights \(5, 2, 3\).*do not fit"):
-        directing.composed(weights, coefficients, amplitudes[:, :2], layer, gain, none)
+        directing.composed(weights, coefficients, amplitudes[:, :1], layer, gain, none)
 
 
 def test_what_gains_take_goes_to_the_layers_neutral():

@@ -14,7 +14,7 @@ def test_a_face_is_the_papers_sum():
     found = layer_composition.composed(basis, masks, u)
     for t, d in np.ndindex(3, 6):
         expected = sum(
-            masks[m, d] * weights[t, m, layer[k]] * amplitudes[t, layer[k]] * coefficients[t, k]
+            masks[m, d] * weights[t, m, layer[k]] * amplitudes[t, m] * coefficients[t, k]
             * basis[d, k] for m in range(2) for k in range(5)
         )  # fmt: skip
         assert found[t, d] == pytest.approx(expected)

@@ -4,10 +4,9 @@ import pathlib
 import hypothesis
 import numpy as np
 import pytest
-import scipy.optimize
 from hypothesis import strategies as st
 
-from stages.core import layer_amplitude, layer_kernel
+from stages.core import layer_kernel
 
 CORE = pathlib.Path(layer_kernel.__file__).parent
 GROUP = np.repeat([0, 1, 2], (4, 3, 1))
@@ -78,19 +77,6 @@ def test_derivatives_are_those_of_the_displacements(overlap):
     np.testing.assert_allclose(hessian, 2 * slopes.T @ gram @ slopes)
     vector = rng.normal(size=masks * count)
     np.testing.assert_allclose(layer_kernel._times(gram, pairs, vector, count), gram @ vector)
-
-
-@hypothesis.given(seed=st.integers(0, 2**32 - 1))
-@hypothesis.settings(deadline=None)
-def test_amplitudes_are_the_bounded_least_squares(seed):
-    rng = np.random.default_rng(seed)
-    factor, aim = rng.normal(size=(5, 3)), 3.0 * rng.normal(size=5)
-    centre, pull, beyond = rng.uniform(1, 2, size=3), 0.2, 0.7
-    got = layer_amplitude.bounded(factor.T @ factor, factor.T @ aim, pull, centre, beyond)
-    wide = np.concatenate([factor, np.sqrt(pull) * np.eye(3)])
-    tall = np.concatenate([aim, np.sqrt(pull) * centre])
-    truth = scipy.optimize.lsq_linear(wide, tall, (1.0, 1.0 + beyond), tol=1e-14).x
-    np.testing.assert_allclose(got, truth, atol=1e-5)
 
 
 def test_no_kernel_calls_one_of_another_file():

@@ -17,6 +17,7 @@ def test_the_steep_one_decides_at_sigma():
     odds = near[[2, 4]] / (1 - near[[2, 4]])
     np.testing.assert_allclose(odds, [(0.03 / 0.012) ** 8, 0.5**8], rtol=1e-6)
     assert np.all(np.diff(near[1:6]) < 0)
+    np.testing.assert_array_equal(lip_closeness.steep(gap, 0.1, 1e-60), [1, 1, 0, 0, 0, 0, 0])
 
 
 @pytest.mark.parametrize("rule", [lip_closeness.closeness, lip_closeness.steep])

@@ -23,7 +23,7 @@ def drawn(frames=7):
         extremes,
         drawn_values(frames, 3, 2),
         drawn_values(frames, 4),
-        drawn_values(frames, 2),
+        drawn_values(frames, 3),
         {name: drawn_values(frames) for name in layers.MEASURES},
         drawn_values(frames),
     )
@@ -39,6 +39,7 @@ def test_layers_come_back(tmp_path):
     found = series.read(path, "layers")
     np.testing.assert_array_equal(found.columns["weight.eyes.emotion"], written.weights[:, 2, 0])
     np.testing.assert_array_equal(found.columns["coefficient.speech.m"], written.coefficients[:, 3])
+    np.testing.assert_array_equal(found.columns["amplitude.mouth"], written.amplitudes[:, 1])
     assert found.meta["solver"] == "certified"
 
 

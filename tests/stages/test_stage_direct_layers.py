@@ -45,7 +45,7 @@ class DirectedTake:
             for name in LAYERS
         ]
         self.coefficients = np.concatenate(parts, axis=1)
-        self.amplitudes = rng.uniform(1, 1.3, (FRAMES, len(LAYERS)))
+        self.amplitudes = rng.uniform(1, 1.3, (FRAMES, len(MASKS)))
         self.weights[40], self.coefficients[40], self.amplitudes[40] = np.nan, np.nan, np.nan
         frame = np.arange(FRAMES)
         self.time_s = frame / float(RATE)
@@ -97,9 +97,8 @@ class DirectedTake:
     def composed(self, mask, layer, name):
         """Compose one column by the written formula."""
         k, j = TAKEN.index((layer, name)), LAYERS.index(layer)
-        return (
-            self.weights[:, MASKS.index(mask), j] * self.coefficients[:, k] * self.amplitudes[:, j]
-        )
+        at = MASKS.index(mask)
+        return self.weights[:, at, j] * self.coefficients[:, k] * self.amplitudes[:, at]
 
 
 @pytest.fixture

@@ -141,12 +141,12 @@ def check_session(tables, row):
     whose = row_of(tables["sessions"], "session", neutral["session"])["actor"]
     if whose != session["actor"]:
         message = f"'{neutral['shot']}' shows {whose}, not {session['actor']}"
-        refuse("sessions", row, "neutral_shot", message + "; choose a shot of the same actor")
+        refuse("sessions", row, "neutral_shot", f"{message}; choose a shot of the same actor")
     for points in ("video", "markers"):
         if any(has_points(tables, shot, points) for shot in shots):
             if not has_points(tables, neutral, points):
                 message = f"'{neutral['shot']}' has no {points} points, other shots of it have"
-                refuse("sessions", row, "neutral_shot", message + "; choose one with both")
+                refuse("sessions", row, "neutral_shot", f"{message}; choose one with both")
     if any(shot["markers"] for shot in shots) and not session["unit_markers"]:
         message = "is blank, yet its shots have markers; name two, such as those at the eye corners"
         refuse("sessions", row, "unit_markers", message)
