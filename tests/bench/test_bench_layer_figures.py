@@ -44,7 +44,7 @@ def made(rng):
     scale = rng.uniform(0.2, 2.0, SIZE)
     masks = np.eye(3)[owner].T
     given = (NAMES, extremes, MASKS, LAYOUT, "both", basis, scale, masks, LAYER)
-    return simplices.Simplices(*given, "", "", np.nan)
+    return simplices.Simplices(*given, "", "", np.nan, np.zeros(0), np.zeros(0), 0.0)
 
 
 def solved_of(rng, made, count):
