@@ -54,7 +54,7 @@ def presence(time_s: np.ndarray, start_s: float, end_s: float, fade_s: float) ->
         raise ValueError(f"a fade of {fade_s:g} s is negative")
     if not end_s > start_s:
         raise ValueError(f"the end, {end_s:g} s, is not after the start, {start_s:g} s")
-    if not end_s - start_s >= 2 * fade_s:
+    if not end_s - start_s >= 2 * fade_s * (1 - 1e-9):
         raise ValueError(f"{start_s:g} s to {end_s:g} s leaves no room for fades of {fade_s:g} s")
     inside = (time_s >= start_s) & (time_s < end_s)
     if not fade_s:

@@ -41,7 +41,10 @@ def regular(
     count = clock.frame_count(elapsed[-1], rate)
     frame_clock.check_span(len(time_s), count)
     steps = np.diff(elapsed)
-    counts = np.maximum(np.rint(steps / np.median(steps)), 1) if len(steps) else steps
+    # one frame of the measuring clock: where many rows are lost, most steps are of several
+    single = steps[np.rint(steps * float(rate)) == 1]
+    one = np.median(single if len(single) else steps) if len(steps) else 1.0
+    counts = np.maximum(np.rint(steps / one), 1)
     row = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
     dense = np.arange(row[-1] + 1)
     measured = np.zeros(len(dense), bool)
