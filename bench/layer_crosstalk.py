@@ -54,7 +54,7 @@ def table(take: layer_vignette.Take) -> list[str]:
     lines = [layer_vignette.row("", heads, 9, first=56)]
     ways = {
         "": How(lip_sigma=0.0),
-        "; lip bias": How(),
+        "; as by default": layer_vignette.DEFAULT,
         "; variance": How(0.0, balance="variance"),
         "; markers": How(0.0, points="markers"),
         "; no lean": How(0.0, lean=0.0),

@@ -141,7 +141,7 @@ def longest(flags: np.ndarray) -> int:
 
 def directed(take: layer_vignette.Take) -> list[str]:
     """Return lines: speech curves and closures once emotions are turned down."""
-    solved, made = take.solve(How()), take.made
+    solved, made = take.solve(layer_vignette.DEFAULT), take.made
     time_s = np.arange(len(take.offsets)) / take.rate
     emotion = [k for k, (layer, _) in enumerate(made.extremes) if layer == "emotion"]
     chosen = {"nothing": []}

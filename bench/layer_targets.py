@@ -11,7 +11,7 @@ How = layer_vignette.How
 EXAGGERATED = 1.1
 BEYOND = (0.0, 0.15, 0.3, 0.5, 0.7, 1.0)
 SOFT = {
-    "as by default": How(lip_bias="gap", lips="told"),
+    "as by default": layer_vignette.DEFAULT,
     "no bias": How(0.0),
     "markers, no bias": How(0.0, points="markers"),
     "markers, nothing held": How(0.0, 0.0, points="markers", lean=0.0),
@@ -21,7 +21,7 @@ SOFT = {
 def planted(take: layer_vignette.Take) -> list[str]:
     """Return lines: errors against the planted layers on every character [mm]."""
     cases = {
-        "as by default": How(),
+        "as by default": layer_vignette.DEFAULT,
         "no lip bias": How(lip_sigma=0.0),
         "no lip bias, no lean": How(lip_sigma=0.0, lean=0.0),
         "no lip bias, beyond 0.7": How(lip_sigma=0.0, beyond=0.7),
@@ -91,7 +91,7 @@ def rivals(take: layer_vignette.Take) -> list[str]:
     ideal = true_poses(take, body)
     made = {"standing still": 0 * true}
     for label, how in {
-        "layers": How(),
+        "layers": layer_vignette.DEFAULT,
         "layers, no bias": How(lip_sigma=0.0),
         "layers of markers, no bias": How(0.0, points="markers"),
         "layers of markers, no bias, nothing held": How(0.0, 0.0, points="markers"),

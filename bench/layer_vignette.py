@@ -41,6 +41,10 @@ class How(NamedTuple):
     character: str = CHARACTERS[0]
 
 
+# as characters.tsv has it where nothing else is asked for
+DEFAULT = How(lip_sigma=0.012, beyond=0.5, lip_bias="gap", lips="told")
+
+
 class Solved(NamedTuple):
     """Hold weights (T, R, J), coefficients (T, K), amplitudes (T, R), u (T, R, K), gamma (T,)."""
 
