@@ -95,9 +95,9 @@ def dual(parts, weights):
 def choose(parts, targets):
     """Find for each target the lambda that minimises ``N |P y|^2 / (tr P)^2``.
 
-    ``P = I - H (H'H + lambda I)^-1 H'``. It has several minima: the lowest of a grid is the start
-    of the published re-estimation, ``lambda <- y'P^2 y tr(A^-1 - lambda A^-2) / (w'A^-1 w tr P)``,
-    which is repeated until the criterion stays.
+    ``P = I - H (H'H + lambda I)^-1 H'``. It has several minima: each of a grid is the start of the
+    published re-estimation, ``lambda <- y'P^2 y tr(A^-1 - lambda A^-2) / (w'A^-1 w tr P)``, which
+    is repeated until the criterion stays; the lowest is taken.
 
     Parameters
     ----------
@@ -118,10 +118,23 @@ def choose(parts, targets):
     largest = energy.max(initial=0.0) or 1.0
     grid = largest * np.logspace(LOWEST, HIGHEST, (HIGHEST - LOWEST) * PER_DECADE + 1)
     scores = np.stack([_score(parts, rotated, outside, value) for value in grid])
+    padded = np.pad(scores, ((1, 1), (0, 0)), constant_values=np.inf)
     # the last of equals: what cannot be told apart is smoothed most
-    start = len(grid) - 1 - scores[::-1].argmin(axis=0)
-    best, lowest = grid[start], scores.min(axis=0)
-    current, open_ = best, np.arange(len(best))
+    minima = (scores <= padded[:-2]) & (scores < padded[2:])
+    best, lowest = grid[-1 - scores[::-1].argmin(axis=0)], scores.min(axis=0)
+    for row in np.flatnonzero(minima.any(axis=1)):
+        held = np.flatnonzero(minima[row])
+        found, reached = _reestimated(parts, rotated[:, held], outside[held], grid, grid[row])
+        better = reached < lowest[held]
+        best[held[better]], lowest[held[better]] = found[better], reached[better]
+    return best
+
+
+def _reestimated(parts, rotated, outside, grid, start):
+    """Return the lambdas (K,) that re-estimation meets from one start, and their criterion."""
+    best = np.full(len(outside), start)
+    lowest = _score(parts, rotated, outside, best)
+    current, open_ = best.copy(), np.arange(len(best))
     for _ in range(ITERATIONS):
         part = rotated[:, open_], outside[open_]
         current = np.clip(_estimate(parts, *part, current), grid[0], grid[-1])
@@ -132,7 +145,7 @@ def choose(parts, targets):
         open_, current = open_[moving], current[moving]
         if len(open_) == 0:
             break
-    return best
+    return best, lowest
 
 
 def score(parts, targets, lambdas):
