@@ -1,3 +1,5 @@
+import math
+
 import numpy as np
 import pytest
 import scipy.spatial.transform
@@ -59,10 +61,11 @@ def test_other_axes_are_refused(text):
         head_shaping.read_axes(text)
 
 
-@given(st.floats(1e-6, 50.0), st.floats(0.05, 3.0))
+@given(st.floats(0.0, 50.0), st.floats(0.05, 3.0))
 def test_a_limit_holds_and_leaves_small_turns(angle, limit):
     turn = np.array([[0.6 * angle, 0.0, 0.8 * angle]])
-    made = np.linalg.norm(head_shaping.limited(turn, limit))
+    # squares of the smallest angles would underflow
+    made = math.hypot(*head_shaping.limited(turn, limit)[0])
     assert made <= limit * (1 + 1e-12)
     assert made <= angle * (1 + 1e-12)
     if angle <= 0.5 * limit:
