@@ -12,7 +12,7 @@ from unittest import mock
 
 import numpy as np
 
-from bench import layer_vignette
+from bench import layer_bodies, layer_vignette
 from data_example.generator import (
     capture,
     contours,
@@ -62,7 +62,7 @@ def table(take: layer_vignette.Take) -> list[str]:
         "; beyond 0.7": How(0.0, beyond=0.7),
         "; beyond 0.7, no lean": How(0.0, beyond=0.7, lean=0.0),
     }
-    body = layer_vignette.body(take, "clay_layers")
+    body = layer_bodies.body(take, "clay_layers")
     shown = {
         "no noise": on_basis(take, True, 0.0),
         "basis": on_basis(take, True, 1.0),
@@ -98,7 +98,7 @@ def changes(take, body, layer: str, one: np.ndarray, other: np.ndarray) -> list[
     mean = np.sqrt(np.mean(apart**2, axis=0))
     cells = [mean.mean(), mean.max(), np.percentile(apart, 95)]
     alone = [np.where(own, u, 0.0) for u in (one, other)]
-    shown = [layer_vignette.displaced(body, u) for u in alone]
+    shown = [layer_bodies.displaced(body, u) for u in alone]
     for mask in body.masks:
         chosen = body.moving & (mask > 0.5)
         size = np.linalg.norm(shown[0][:, chosen].reshape(len(one), -1), axis=1)

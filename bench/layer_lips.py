@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from bench import layer_seams, layer_vignette
+from bench import layer_bodies, layer_seams, layer_vignette
 from stages.core import directing, layer_solver
 from stages.files import series
 
@@ -72,7 +72,7 @@ def closures(take: layer_vignette.Take) -> list[str]:
             cells = rates(shut, true, every) + rates(shut, true, talks)
             lines.append(layer_vignette.row(f"  {lips}, below {limit:g}", cells, 12, 2))
     for name in layer_vignette.CHARACTERS:
-        body = layer_vignette.body(take, name)
+        body = layer_bodies.body(take, name)
         gaps = {label: layer_seams.gaps(body, u) for label, u in cases.items()}
         for lips in ("film", "told", "truth"):
             how = How(lip_sigma=0.012, lip_bias="gap", lips=lips, character=name)
@@ -88,7 +88,7 @@ def closures(take: layer_vignette.Take) -> list[str]:
     return lines
 
 
-def delivered(take: layer_vignette.Take, body: layer_vignette.Body) -> np.ndarray:
+def delivered(take: layer_vignette.Take, body: layer_bodies.Body) -> np.ndarray:
     """Return the weights (T, C) of a character's take as the show delivered them."""
     folder = take.show / "results/takes" / layer_vignette.SHOT / body.name
     found = series.read(folder / "weights.parquet", "weights")
@@ -105,15 +105,15 @@ def costs(take: layer_vignette.Take) -> list[str]:
     mouth, upper = take.made.masks.index("mouth"), take.made.masks.index("upper")
     emotion = take.made.layers.index("emotion")
     for name in ("clay_layers", "tortoise"):
-        body = layer_vignette.body(take, name)
+        body = layer_bodies.body(take, name)
         own = body.moving & (body.masks[upper] > 0.5)
-        true = layer_vignette.displaced(body, take.planted, own)
-        apart = layer_vignette.displaced(body, free.u, own)
+        true = layer_bodies.displaced(body, take.planted, own)
+        apart = layer_bodies.displaced(body, free.u, own)
         for sigma in (0.012, 0.02):
             for bias in layer_solver.LIP_BIASES:
                 how = How(lip_sigma=sigma, lip_bias=bias, lips="told", character=name)
                 biased = take.solve(how)
-                held = layer_vignette.displaced(body, biased.u, own)
+                held = layer_bodies.displaced(body, biased.u, own)
                 sure = biased.gamma > SURE
                 weight, other = (each.weights[sure, mouth, emotion] for each in (biased, free))
                 slow, fast = speed(held)[sure], speed(apart)[sure]
@@ -149,7 +149,7 @@ def directed(take: layer_vignette.Take) -> list[str]:
         chosen[family] = [made.extremes.index(("emotion", name)) for name in names]
     chosen["all emotion"] = emotion
     spoken = made.layer == made.layers.index("speech")
-    bodies = {name: layer_vignette.body(take, name) for name in layer_vignette.CHARACTERS}
+    bodies = {name: layer_bodies.body(take, name) for name in layer_vignette.CHARACTERS}
     windows = bilabials(take)
     mouths = [(n, mouth) for n, body in bodies.items() for mouth in layer_seams.of(n)]
     heads = [mouth.removeprefix("mouth_") if n == "globe" else n[:8] for n, mouth in mouths]

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bench import layer_vignette
+from bench import layer_bodies
 from data_example.generator import (
     cassette,
     cassette_parts,
@@ -51,7 +51,7 @@ def _ring(first: int, count: int) -> Seam:
     return Seam(first + inside, first + count - inside)
 
 
-def gaps(body: layer_vignette.Body, u: np.ndarray) -> dict[str, np.ndarray]:
+def gaps(body: layer_bodies.Body, u: np.ndarray) -> dict[str, np.ndarray]:
     """Return how far the lips of each mouth stand apart (T, n) along the seam [1, of the height].
 
     Parameters
@@ -61,7 +61,7 @@ def gaps(body: layer_vignette.Body, u: np.ndarray) -> dict[str, np.ndarray]:
     """
     found = {}
     for mouth, seam in of(body.name).items():
-        sides = [body.neutral[side] + layer_vignette.displaced(body, u, side) for side in seam]
+        sides = [body.neutral[side] + layer_bodies.displaced(body, u, side) for side in seam]
         found[mouth] = np.linalg.norm(sides[0] - sides[1], axis=2) / body.height
     return found
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from bench import layer_motion, layer_rivals, layer_vignette
+from bench import layer_bodies, layer_motion, layer_rivals, layer_vignette
 from data_example.generator import clay_shapes
 from stages.core import coordinate_balance, local_shapes
 from stages.files import rig
@@ -29,26 +29,26 @@ def planted(take: layer_vignette.Take) -> list[str]:
     }
     lines = []
     for name in layer_vignette.CHARACTERS:
-        body = layer_vignette.body(take, name)
-        true = layer_vignette.displaced(body, take.planted)
+        body = layer_bodies.body(take, name)
+        true = layer_bodies.displaced(body, take.planted)
         lines.append(layer_vignette.row(f"{name} [mm]", ["all", *take.made.masks]))
         for label, u in {label: take.solve(how).u for label, how in cases.items()}.items():
-            moved = layer_vignette.displaced(body, u)
+            moved = layer_bodies.displaced(body, u)
             lines.append(
                 layer_vignette.row(
-                    "  " + label, layer_vignette.distance(body, moved, true).mean(axis=0)
+                    "  " + label, layer_bodies.distance(body, moved, true).mean(axis=0)
                 )
             )
-        nearest = layer_vignette.displaced(body, normalised(take))
+        nearest = layer_bodies.displaced(body, normalised(take))
         lines.append(
             layer_vignette.row(
                 "  truth with strengths summing to 1",
-                layer_vignette.distance(body, nearest, true).mean(axis=0),
+                layer_bodies.distance(body, nearest, true).mean(axis=0),
             )
         )
         lines.append(
             layer_vignette.row(
-                "  standing still", layer_vignette.distance(body, 0 * true, true).mean(axis=0)
+                "  standing still", layer_bodies.distance(body, 0 * true, true).mean(axis=0)
             )
         )
     return lines
@@ -75,7 +75,7 @@ def clay_truth(take: layer_vignette.Take, expression: np.ndarray) -> np.ndarray:
     return flat.reshape(len(weights), -1, 3)
 
 
-def true_poses(take: layer_vignette.Take, body: layer_vignette.Body) -> layer_vignette.Body:
+def true_poses(take: layer_vignette.Take, body: layer_bodies.Body) -> layer_bodies.Body:
     """Return the clay head with poses that are what she does, not what the artist made of it."""
     names = list(take.truth["extreme_names"])
     order = [names.index("_".join(extreme)) for extreme in take.made.extremes]
@@ -86,7 +86,7 @@ def true_poses(take: layer_vignette.Take, body: layer_vignette.Body) -> layer_vi
 
 def rivals(take: layer_vignette.Take) -> list[str]:
     """Return lines: errors of several methods against the clay head's truth by expression [mm]."""
-    body = layer_vignette.body(take, "clay_layers")
+    body = layer_bodies.body(take, "clay_layers")
     true = clay_truth(take, take.truth["expression"])
     ideal = true_poses(take, body)
     made = {"standing still": 0 * true}
@@ -99,10 +99,10 @@ def rivals(take: layer_vignette.Take) -> list[str]:
         "the same, no lean, beyond 0.7": How(0.0, 0.0, 0.7, points="markers", lean=0.0),
     }.items():
         u = take.solve(how).u
-        made[label + "; artist's poses"] = layer_vignette.displaced(body, u)
-        made[label + "; true poses"] = layer_vignette.displaced(ideal, u)
-    made["planted layers; artist's poses"] = layer_vignette.displaced(body, take.planted)
-    made["planted layers; true poses"] = layer_vignette.displaced(ideal, take.planted)
+        made[label + "; artist's poses"] = layer_bodies.displaced(body, u)
+        made[label + "; true poses"] = layer_bodies.displaced(ideal, u)
+    made["planted layers; artist's poses"] = layer_bodies.displaced(body, take.planted)
+    made["planted layers; true poses"] = layer_bodies.displaced(ideal, take.planted)
     faces = clay_truth(take, np.load(take.show / "data_example/truth/faces.npz")["expression"])
     for kinds in ("both", "markers"):
         for counts in layer_rivals.COUNTS:
@@ -112,7 +112,7 @@ def rivals(take: layer_vignette.Take) -> list[str]:
     talks, strong = layer_vignette.talking(take), exaggerated(take)
     lines = [layer_vignette.row("", ["all", *take.made.masks, "talking", "strong"])]
     for label, moved in made.items():
-        found = layer_vignette.distance(body, moved, true)
+        found = layer_bodies.distance(body, moved, true)
         cells = [*found.mean(axis=0), found[talks, 0].mean(), found[strong, 0].mean()]
         lines.append(layer_vignette.row(label, cells, first=58))
     lines[0] = layer_vignette.row("", ["all", *take.made.masks, "talking", "strong"], first=58)
@@ -134,21 +134,19 @@ def beyond(take: layer_vignette.Take) -> list[str]:
     heads = ["by expr.", *take.made.masks, "strong", *(f"{m}, s." for m in take.made.masks)]
     heads += ["clay", "strong", "mouth", "tortoise", "strong", "jitter"]
     lines.append(layer_vignette.row("", heads, 10))
-    clay, tortoise = (layer_vignette.body(take, name) for name in ("clay_layers", "tortoise"))
+    clay, tortoise = (layer_bodies.body(take, name) for name in ("clay_layers", "tortoise"))
     ideal = true_poses(take, clay)
     by_expression = clay_truth(take, take.truth["expression"])
-    planted_on = {b.name: layer_vignette.displaced(b, take.planted) for b in (clay, tortoise)}
+    planted_on = {b.name: layer_bodies.displaced(b, take.planted) for b in (clay, tortoise)}
     mouth = 1 + take.made.masks.index("mouth")
     for label, how in SOFT.items():
         for how_far in BEYOND:
             u = take.solve(how._replace(beyond=how_far)).u
-            found = layer_vignette.distance(
-                ideal, layer_vignette.displaced(ideal, u), by_expression
-            )
+            found = layer_bodies.distance(ideal, layer_bodies.displaced(ideal, u), by_expression)
             cells = [*found.mean(axis=0), *found[strong].mean(axis=0)]
-            moved = {b.name: layer_vignette.displaced(b, u) for b in (clay, tortoise)}
+            moved = {b.name: layer_bodies.displaced(b, u) for b in (clay, tortoise)}
             wrong = {
-                b.name: layer_vignette.distance(b, moved[b.name], planted_on[b.name])
+                b.name: layer_bodies.distance(b, moved[b.name], planted_on[b.name])
                 for b in (clay, tortoise)
             }
             all_over = wrong[clay.name][:, 0]
@@ -162,11 +160,11 @@ def beyond(take: layer_vignette.Take) -> list[str]:
 
 def balances(take: layer_vignette.Take) -> list[str]:
     """Return lines: errors by rule of balance and kind of points [mm]."""
-    clay, tortoise = (layer_vignette.body(take, name) for name in ("clay_layers", "tortoise"))
+    clay, tortoise = (layer_bodies.body(take, name) for name in ("clay_layers", "tortoise"))
     ideal = true_poses(take, clay)
     cases = (
-        (tortoise, layer_vignette.displaced(tortoise, take.planted)),
-        (clay, layer_vignette.displaced(clay, take.planted)),
+        (tortoise, layer_bodies.displaced(tortoise, take.planted)),
+        (clay, layer_bodies.displaced(clay, take.planted)),
         (ideal, clay_truth(take, take.truth["expression"])),
     )
     heads = ["tortoise", "clay", "clay by expr."]
@@ -177,7 +175,7 @@ def balances(take: layer_vignette.Take) -> list[str]:
             for sigma in (0.0, 0.02):
                 u = take.solve(How(lip_sigma=sigma, points=points, balance=rule)).u
                 for body, true in cases:
-                    found = layer_vignette.distance(body, layer_vignette.displaced(body, u), true)
+                    found = layer_bodies.distance(body, layer_bodies.displaced(body, u), true)
                     cells.append(found[:, 0].mean())
             lines.append(layer_vignette.row(f"{points}, {rule}", cells, width=14))
     return lines
